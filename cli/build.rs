@@ -1,4 +1,5 @@
-//! Lists the files of the page that `asperity web` carries, where `bindings/web/build` has staged them. Only with the feature `web`.
+//! Lists the files of the page that `asperity web` carries, where `bindings/web/build` has staged
+//! them. Only with the feature `web`.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! Ten thousand random scenes at the ends of the accepted ranges: how many are refused, and how far the hardest
-//! contact force lies above what physics explains.
+//! Ten thousand random scenes at the ends of the accepted ranges: how many are refused, and how far
+//! the hardest contact force lies above what physics explains.
 //!
 //! ```sh
 //! cargo run --release --example accepted_ranges -- 10000      # scenes 1 to 10000

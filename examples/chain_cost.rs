@@ -1,7 +1,8 @@
 //! Cost of each stage of one contact, and growth of the whole with contacts and modes.
 //!
-//! `cargo run --release --example chain_cost`. One thread; the quickest tenth, so that a busy machine matters less.
-//! Whole scenes in real time are measured by `asperity headroom` and `cargo bench --bench headroom`.
+//! `cargo run --release --example chain_cost`. One thread; the quickest tenth, so that a busy
+//! machine matters less. Whole scenes in real time are measured by `asperity headroom` and `cargo
+//! bench --bench headroom`.
 
 #[path = "../benches/scenes/mod.rs"]
 mod scenes;
@@ -23,7 +24,8 @@ fn main() {
     growth();
 }
 
-/// Ns that one call of `work` takes: the quickest tenth of `calls` calls. `prepare` runs before each, outside the clock.
+/// Ns that one call of `work` takes: the quickest tenth of `calls` calls. `prepare` runs before
+/// each, outside the clock.
 fn quiet_ns(calls: usize, prepare: &mut dyn FnMut(), work: &mut dyn FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..calls)
         .map(|_| {

@@ -3,8 +3,9 @@
 //! ```text
 //! bus i → distance (1/r) → constant-power panning by the bearing (−90° left … +90° right) → stereo
 //! ```
-//! The engine knows no listener: it gives each body's sound apart, so that the game's own mixer, reverb and head-related filters do the rest.
-//! This one is the smallest that is any use. Run `cargo run --release --example four_bodies -- FOLDER`; it writes FOLDER/four_bodies.wav.
+//! The engine knows no listener: it gives each body's sound apart, so that the game's own mixer,
+//! reverb and head-related filters do the rest. This one is the smallest that is any use. Run
+//! `cargo run --release --example four_bodies -- FOLDER`; it writes FOLDER/four_bodies.wav.
 
 use asperity::files::wav::write_wav;
 use asperity::{AudioBus, Body, Config, ContactEvent, Engine, Impact, Material, Stock};

@@ -6,10 +6,11 @@
 //! cargo run --release --example game_loop --features device    # through the sound card
 //! ```
 //!
-//! A finger circles over a grooved plate for three seconds, lifts off, and a steel ball hits the plate.
+//! A finger circles over a grooved plate for three seconds, lifts off, and a steel ball hits the
+//! plate.
 //!
-//! In a game of your own paste these lines into the `Cargo.toml` of the workspace as well: an unoptimised development build renders
-//! three objects at 0.9 times real time and crackles.
+//! In a game of your own paste these lines into the `Cargo.toml` of the workspace as well: an
+//! unoptimised development build renders three objects at 0.9 times real time and crackles.
 //!
 //! ```toml
 //! [profile.dev.package.asperity]
@@ -125,7 +126,8 @@ impl Finger {
     }
 }
 
-/// A full queue hands the event back: drop it, the next step reports again. A lost end fades by itself.
+/// A full queue hands the event back: drop it, the next step reports again. A lost end fades by
+/// itself.
 fn report(scene: &mut Scene, time_s: f64, event: ContactEvent) -> Result<(), Box<dyn Error>> {
     match scene.report(time_s, event) {
         Err(refused) if refused.reason == asperity::Refusal::QueueFull => Ok(()),

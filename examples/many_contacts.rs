@@ -1,8 +1,10 @@
-//! What 64 contacts cost each against one alone: ns a sample and contact on silent plates, in turn, so that both see the same machine.
+//! What 64 contacts cost each against one alone: ns a sample and contact on silent plates, in turn,
+//! so that both see the same machine.
 //!
-//! `cargo run --release --example many_contacts -- [KERNEL] [FRAMES] [GROUND] [CONTACTS] [TURNS]`, for example `avx2 64 map 64 400`. GROUND is `map` (a displacement
-//! and a roughness map), `heights` (a displacement map) or `flat`; the micro-relief is a scene's own in all of them. With 0 turns nothing is compared: the
-//! contacts alone are rendered for four seconds, for a profiler.
+//! `cargo run --release --example many_contacts -- [KERNEL] [FRAMES] [GROUND] [CONTACTS] [TURNS]`,
+//! for example `avx2 64 map 64 400`. GROUND is `map` (a displacement and a roughness map),
+//! `heights` (a displacement map) or `flat`; the micro-relief is a scene's own in all of them. With
+//! 0 turns nothing is compared: the contacts alone are rendered for four seconds, for a profiler.
 
 use asperity::dsp::simd::Isa;
 use asperity::{

@@ -1,5 +1,5 @@
-//! Ten fingers through the null sink in blocks of 64 frames at 44.1 kHz, beside a bare loop with the same
-//! deadlines: what is late, and what the machine itself loses.
+//! Ten fingers through the null sink in blocks of 64 frames at 44.1 kHz, beside a bare loop with
+//! the same deadlines: what is late, and what the machine itself loses.
 //!
 //! ```sh
 //! cargo run --release --example null_sink [SECONDS]     # default 60

@@ -1,13 +1,13 @@
-//! The seven materials of the solid-noise paper under one finger: what each sounds and feels like, the
-//! force a force-feedback device would give, and how the surfaces look.
+//! The seven materials of the solid-noise paper under one finger: what each sounds and feels like,
+//! the force a force-feedback device would give, and how the surfaces look.
 //!
 //! ```sh
 //! cargo run --release --example seven_materials [FOLDER]     # default seven_materials/
 //! ```
 //!
-//! Writes NAME.audio.wav and NAME.haptic.wav (pad displacement, m) for each, forces.svg and materials.png:
-//! 20 mm × 20 mm each, lit from the top left, every relief stretched to the same slope (by the printed
-//! factor), because granite's would not be seen.
+//! Writes NAME.audio.wav and NAME.haptic.wav (pad displacement, m) for each, forces.svg and
+//! materials.png: 20 mm × 20 mm each, lit from the top left, every relief stretched to the same
+//! slope (by the printed factor), because granite's would not be seen.
 
 #[path = "surfaces/mod.rs"]
 mod surfaces;

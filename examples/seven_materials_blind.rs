@@ -4,9 +4,9 @@
 //! cargo run --release --example seven_materials_blind
 //! ```
 //!
-//! The judge is the one of the test `seven_materials`, unchanged. Eight sets of seeds, written down before
-//! the first run; in each the judge learns 20 strokes a material on one piece of it, and is asked about
-//! 40 other strokes on the same piece and 40 on a piece it has never met.
+//! The judge is the one of the test `seven_materials`, unchanged. Eight sets of seeds, written down
+//! before the first run; in each the judge learns 20 strokes a material on one piece of it, and is
+//! asked about 40 other strokes on the same piece and 40 on a piece it has never met.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -1,7 +1,8 @@
-//! A finger, or several, that stroke for as many samples as you say: `cargo run --release --example soak 1000000000 [contacts] [modes]`.
+//! A finger, or several, that stroke for as many samples as you say: `cargo run --release --example
+//! soak 1000000000 [contacts] [modes]`.
 //!
-//! A billion samples are six hours of touch. Prints the peaks of every tenth; they must stay level, and
-//! the engine must fall silent at the end.
+//! A billion samples are six hours of touch. Prints the peaks of every tenth; they must stay level,
+//! and the engine must fall silent at the end.
 
 #[path = "../benches/scenes/mod.rs"]
 mod scenes;

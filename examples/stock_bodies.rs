@@ -1,6 +1,8 @@
-//! Stock bodies: one strike of every material as a bar, and of every shape in brass, without a recording.
+//! Stock bodies: one strike of every material as a bar, and of every shape in brass, without a
+//! recording.
 //!
-//! Run `cargo run --release --example stock_bodies -- FOLDER`; it writes FOLDER/NAME.wav and a table: the lowest mode, its T60, the level.
+//! Run `cargo run --release --example stock_bodies -- FOLDER`; it writes FOLDER/NAME.wav and a
+//! table: the lowest mode, its T60, the level.
 
 use asperity::files::wav::write_wav;
 use asperity::{Body, Config, ContactEvent, Engine, Impact, Material, Stock};

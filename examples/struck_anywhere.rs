@@ -1,7 +1,8 @@
-//! A bar and a plate struck at places, stroked across, held and let go: closed-form shapes, no file needed.
+//! A bar and a plate struck at places, stroked across, held and let go: closed-form shapes, no file
+//! needed.
 //!
-//! Run `cargo run --release --example struck_anywhere -- FOLDER`; it writes FOLDER/bar.wav and FOLDER/plate.wav and a table: the level of each
-//! mode at each strike.
+//! Run `cargo run --release --example struck_anywhere -- FOLDER`; it writes FOLDER/bar.wav and
+//! FOLDER/plate.wav and a table: the level of each mode at each strike.
 
 #[path = "../tests/common/closed_forms.rs"]
 #[allow(dead_code)]

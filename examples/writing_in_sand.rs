@@ -1,5 +1,5 @@
-//! A finger writes a word into a box of sand: what is heard and felt, the force on the finger, and the
-//! sand afterwards.
+//! A finger writes a word into a box of sand: what is heard and felt, the force on the finger, and
+//! the sand afterwards.
 //!
 //! ```sh
 //! cargo run --release --example writing_in_sand [FOLDER]     # default writing_in_sand/

@@ -1,5 +1,5 @@
-//! Fuzz targets, which must survive any bytes: reading them, and using whatever they are taken for. A target panics when
-//! it finds a fault.
+//! Fuzz targets, which must survive any bytes: reading them, and using whatever they are taken for.
+//! A target panics when it finds a fault.
 #![allow(dead_code)]
 
 use asperity::files::contact_log::{ContactLog, Names};

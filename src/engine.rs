@@ -1,4 +1,5 @@
-//! Assembly of an engine from its settings: designs what is fixed, makes all memory, ties the two halves together.
+//! Assembly of an engine from its settings: designs what is fixed, makes all memory, ties the two
+//! halves together.
 
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::Names;
@@ -30,13 +31,17 @@ pub struct Engine {
     pub scene: Scene,
     /// The audio thread's half: renders.
     pub renderer: Renderer,
-    /// Names of bodies, surfaces and strikers, where the engine was built from a file; empty otherwise.
+    /// Names of bodies, surfaces and strikers, where the engine was built from a file; empty
+    /// otherwise.
     pub names: Names,
-    /// Simulations that have to run on threads of their own, sand for instance; empty unless the engine was built to play live.
+    /// Simulations that have to run on threads of their own, sand for instance; empty unless the
+    /// engine was built to play live.
     pub workers: Vec<SandWorker>,
-    /// Levels that were written or resolved, where the engine was built from a file; empty otherwise.
+    /// Levels that were written or resolved, where the engine was built from a file; empty
+    /// otherwise.
     pub levels: Levels,
-    /// Doubts that are no errors, a line each: a coloured picture taken by its brightness, another integrator than the one asked for.
+    /// Doubts that are no errors, a line each: a coloured picture taken by its brightness, another
+    /// integrator than the one asked for.
     pub remarks: Vec<String>,
 }
 

@@ -1,8 +1,9 @@
 //! **asperity** turns touch into signal.
 //!
-//! A game or VR physics step reports sparse [contact events](ContactEvent); a [`Renderer`] turns them,
-//! at audio rate and in hard real time, into what a finger feels (haptic channels) and what the object
-//! sounds like (modal audio), from the displacement and roughness maps the scene already has.
+//! A game or VR physics step reports sparse [contact events](ContactEvent); a [`Renderer`] turns
+//! them, at audio rate and in hard real time, into what a finger feels (haptic channels) and what
+//! the object sounds like (modal audio), from the displacement and roughness maps the scene already
+//! has.
 //!
 //! ```text
 //! game thread                         audio thread

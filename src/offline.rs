@@ -1,4 +1,5 @@
-//! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
+//! Rendering a contact log without a device: the same two halves, the same events, to memory or
+//! WAV.
 
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::{ContactLog, LogError, LogEvent, LogLine, Names};
@@ -19,7 +20,8 @@ use std::time::Duration;
 /// Options of a render.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the nearer of the two.
+    /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the
+    /// nearer of the two.
     pub block_frames: usize,
     /// Time for bodies to ring after the last event, s.
     pub tail_s: f64,
@@ -114,8 +116,8 @@ pub fn render_tapped<T: Tap>(
     render_edited(scene, renderer, log, names, options, &mut Edits::default(), tap)
 }
 
-/// [`render_tapped`] of a recording that holds edits of the scene, made with what `edits` has. Without, they are made from the disk,
-/// and of nobody's own sources and surfaces.
+/// [`render_tapped`] of a recording that holds edits of the scene, made with what `edits` has.
+/// Without, they are made from the disk, and of nobody's own sources and surfaces.
 ///
 /// # Errors
 /// As [`render`], and when an edit cannot be made.
@@ -194,8 +196,9 @@ impl Take {
         }
     }
 
-    /// Renders whole blocks that no coming event can touch, and more when the queue runs full. Where
-    /// the queue is flushed does not change the result, because every event carries its sample.
+    /// Renders whole blocks that no coming event can touch, and more when the queue runs full.
+    /// Where the queue is flushed does not change the result, because every event carries its
+    /// sample.
     fn make_room<T: Tap>(&mut self, next_event: u64, tap: &mut T) {
         while !self.stopped && self.renderer.position() + self.block_frames as u64 <= next_event.min(self.end)
         {

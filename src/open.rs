@@ -44,25 +44,28 @@ pub struct Overrides<'a> {
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it.
     pub kernel: Option<Isa>,
-    /// Most contacts that sound at once ([`Config::max_contacts`](field@crate::Config::max_contacts)). A render of one finger that makes
-    /// room for few opens faster; the bits are the same.
+    /// Most contacts that sound at once
+    /// ([`Config::max_contacts`](field@crate::Config::max_contacts)). A render of one finger that
+    /// makes room for few opens faster; the bits are the same.
     pub max_contacts: Option<usize>,
-    /// Threads that render at once; 1 unless told otherwise ([`Config::threads`](field@crate::Config::threads)).
+    /// Threads that render at once; 1 unless told otherwise
+    /// ([`Config::threads`](field@crate::Config::threads)).
     pub threads: Option<usize>,
-    /// Conversion of game time to samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
-    /// [`ClockMode::LIVE`].
+    /// Conversion of game time to samples; exactly unless told otherwise, for a render or a replay.
+    /// A game that opens a scene and runs now takes [`ClockMode::LIVE`].
     pub clock: Option<ClockMode>,
-    /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
+    /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are
+    /// limited.
     pub live: bool,
-    /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them:
-    /// `Engine::from_scene(&SceneFile::load(path)?, &Overrides { own: &[("NAME", make)], ..Overrides::default() })`. What makes them may be
-    /// called more than once ([`MakeSource`]).
+    /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names
+    /// them: `Engine::from_scene(&SceneFile::load(path)?, &Overrides { own: &[("NAME", make)],
+    /// ..Overrides::default() })`. What makes them may be called more than once ([`MakeSource`]).
     pub own: &'a [(&'a str, MakeSource)],
-    /// For [`Scene::apply`](crate::Scene::apply): files that hold something else than before, though the scene names them alike. What is made
-    /// from them is made anew.
+    /// For [`Scene::apply`](crate::Scene::apply): files that hold something else than before,
+    /// though the scene names them alike. What is made from them is made anew.
     pub touched: &'a [PathBuf],
-    /// Maps that were made already: scenes that are opened with the same ones, one after the other, read, decode and filter a picture once.
-    /// A picture that changes meanwhile is not read again.
+    /// Maps that were made already: scenes that are opened with the same ones, one after the other,
+    /// read, decode and filter a picture once. A picture that changes meanwhile is not read again.
     pub maps: Option<&'a Maps>,
 }
 
@@ -89,7 +92,8 @@ impl Default for Overrides<'_> {
 }
 
 impl Engine {
-    /// Reads a scene file and every file that it names, and builds the engine, for a render or a replay.
+    /// Reads a scene file and every file that it names, and builds the engine, for a render or a
+    /// replay.
     ///
     /// # Errors
     /// When a file cannot be used or a number is refused; the message names file and field.
@@ -138,7 +142,8 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
     Ok(engine)
 }
 
-/// Which bodies sound in pascals, whatever the gain by policy, because their modes and their bus say how loud they are.
+/// Which bodies sound in pascals, whatever the gain by policy, because their modes and their bus
+/// say how loud they are.
 fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, FileError> {
     let maker =
         Maker { files: overrides.files, maps: &Maps::default(), own: overrides.own, seed: 0, workers: None };
@@ -200,7 +205,8 @@ fn assemble(
     Ok(Engine { scene, renderer, names, workers, levels: Levels::default(), remarks })
 }
 
-/// Gain of impacts on a body that is added later: as on those that share what the level policy has found.
+/// Gain of impacts on a body that is added later: as on those that share what the level policy has
+/// found.
 fn shared(file: &SceneFile, levels: &Levels) -> f64 {
     let silent = file.bodies.iter().zip(&levels.strike_gain).filter(|(entry, _)| entry.strike_gain.is_none());
     silent.map(|(_, strike_gain)| *strike_gain).fold(1.0, f64::min)
@@ -237,8 +243,8 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
     })
 }
 
-/// A bus without a word about a limiter has one where something is known to clip or nobody knows: before a sound card, where a device is
-/// named, behind a level that nobody wrote.
+/// A bus without a word about a limiter has one where something is known to clip or nobody knows:
+/// before a sound card, where a device is named, behind a level that nobody wrote.
 fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides<'_>) -> AudioBus {
     let names_device =
         file.actuators.iter().any(|actuator| actuator.equalise.is_some() || actuator.limit.is_some());
@@ -246,8 +252,8 @@ fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides
     AudioBus { gain, limit: limit || overrides.live, pascals_at_full_scale: entry.pascals_at_full_scale }
 }
 
-/// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
-/// do not belong to places, or the source cannot be made.
+/// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the
+/// heights do not belong to places, or the source cannot be made.
 pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
     relief_from(&Disk, entry, seed, longest)
 }

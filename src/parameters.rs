@@ -1,7 +1,9 @@
-//! Parameters: every number that a scene file or a contact log may hold, with its unit, range, default and source.
+//! Parameters: every number that a scene file or a contact log may hold, with its unit, range,
+//! default and source.
 //!
-//! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats.md` its tables, an inspector its sliders.
-//! The ranges themselves are those of [`limits`], which the kernels check.
+//! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats.md`
+//! its tables, an inspector its sliders. The ranges themselves are those of [`limits`], which the
+//! kernels check.
 
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use asperity_dsp::limits::{self, Range};
@@ -25,7 +27,8 @@ pub enum Changes {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Parameter {
-    /// The table it stands in, `""` for the top of a scene file, `event` for a line of a contact log.
+    /// The table it stands in, `""` for the top of a scene file, `event` for a line of a contact
+    /// log.
     pub table: &'static str,
     /// Its key.
     pub key: &'static str,

@@ -1,7 +1,8 @@
 //! A change of the sample rate: the device has another one, and the scene goes on.
 //!
-//! The old renderer hands its surfaces over, everything else is designed again for the new rate. Ids stay what they are, time goes on at
-//! the same second, contacts that touch come back with their next move; what rings is cut.
+//! The old renderer hands its surfaces over, everything else is designed again for the new rate.
+//! Ids stay what they are, time goes on at the same second, contacts that touch come back with
+//! their next move; what rings is cut.
 
 use crate::audio::renderer::Renderer;
 use crate::game::scene::Scene;
@@ -16,7 +17,8 @@ use crate::prepared::probe::PreparedProbe;
 pub struct AtRate {
     /// Renders from now on.
     pub renderer: Renderer,
-    /// Surfaces whose sources refuse the new rate, with the reason: they are no longer in the scene.
+    /// Surfaces whose sources refuse the new rate, with the reason: they are no longer in the
+    /// scene.
     pub lost: Vec<(SurfaceId, AddError)>,
 }
 
@@ -43,8 +45,9 @@ impl std::fmt::Debug for AtRate {
 }
 
 impl Scene {
-    /// Goes on at another sample rate: takes the renderer that is no longer called, and gives the one to call from now on. Bodies, surfaces,
-    /// probes, gains and names stay. Ports end and have to be opened again.
+    /// Goes on at another sample rate: takes the renderer that is no longer called, and gives the
+    /// one to call from now on. Bodies, surfaces, probes, gains and names stay. Ports end and have
+    /// to be opened again.
     ///
     /// ```
     /// use asperity::{Config, Engine};
@@ -59,7 +62,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// When the rate is outside its range, or something of the scene cannot be rendered at it; the renderer is handed back.
+    /// When the rate is outside its range, or something of the scene cannot be rendered at it; the
+    /// renderer is handed back.
     pub fn at_rate(&mut self, old: Renderer, sample_rate_hz: f64) -> Result<AtRate, RateError> {
         let before = self.config.clone();
         self.config.sample_rate_hz = sample_rate_hz;

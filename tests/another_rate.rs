@@ -1,4 +1,5 @@
-//! The device comes back at another sample rate: the scene goes on, and every id means what it meant.
+//! The device comes back at another sample rate: the scene goes on, and every id means what it
+//! meant.
 
 use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::NullSink;

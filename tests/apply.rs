@@ -104,13 +104,15 @@ fn what_can_change_while_it_sounds_changes_without_a_step() {
             changed.iter().zip(&still).any(|(a, b)| a[at + 2000..] != b[at + 2000..]),
             "{what} changes nothing"
         );
-        // Another relief under the finger pushes it, and the body sounds of that: what is felt of it has no step.
+        // Another relief under the finger pushes it, and the body sounds of that: what is felt of
+        // it has no step.
         let channels = if what == "a surface" { 1 } else { 2 };
         for (channel, still) in changed.iter().zip(&still).take(channels) {
             let around = &channel[at - 100..at + 1500];
             let range =
                 around.iter().fold([f32::MAX, f32::MIN], |[low, high], x| [low.min(*x), high.max(*x)]);
-            // A step would be all of the range; the crossfade of 20 ms takes 1/470 of it a sample at most.
+            // A step would be all of the range; the crossfade of 20 ms takes 1/470 of it a sample
+            // at most.
             let most = 1.5 * steepest(still) + (range[1] - range[0]) / 400.0;
             assert!(steepest(around) <= most, "{what}: {} a sample, at most {most}", steepest(around));
         }

@@ -1,5 +1,5 @@
-//! Parameters of a surface changed under a sliding contact, through the scene: no sample step above −60 dB
-//! of the signal, felt or heard.
+//! Parameters of a surface changed under a sliding contact, through the scene: no sample step above
+//! −60 dB of the signal, felt or heard.
 
 use crate::common;
 use crate::sliding;
@@ -94,7 +94,8 @@ fn the_law_of_sand() {
         SandLaw { exponent_per_m: 8.0, layers, grain_m: 1e-3, ..law },
         law,
     ];
-    // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt counts.
+    // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt
+    // counts.
     let sand = surface(SandSource::synchronous(&design, 1).unwrap());
     let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::COLLISIONS), 1.0);
     stroke.slide(0.4);

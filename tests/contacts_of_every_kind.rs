@@ -145,7 +145,8 @@ fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
     for name in ["fingertip", "stylus", "rigid"] {
         let probe = preset(name);
         for frequency_hz in [20.0, 40.0, 80.0, 160.0, 315.0, 630.0, 1000.0] {
-            // So low that the probe never leaves it: a tenth of what it is pressed in, at the wave's own acceleration.
+            // So low that the probe never leaves it: a tenth of what it is pressed in, at the
+            // wave's own acceleration.
             let w = TAU * frequency_hz;
             let dynamic = stiffness_n_m(&probe) * pressed_gain(&probe, frequency_hz);
             let amplitude_m = (0.05 * 0.6 / dynamic).min(0.02 * 0.6 / ((probe.pad_mass_kg + 0.02) * w * w));

@@ -1,4 +1,5 @@
-//! Contacts that are rendered together have the bits of each alone, whatever they are and however the time is cut.
+//! Contacts that are rendered together have the bits of each alone, whatever they are and however
+//! the time is cut.
 
 use crate::common;
 
@@ -80,7 +81,8 @@ struct Setting {
     shared_by: usize,
 }
 
-/// Renders those contacts of a game that `plays` says, in blocks of random lengths; the outputs of each contact's channel and bus.
+/// Renders those contacts of a game that `plays` says, in blocks of random lengths; the outputs of
+/// each contact's channel and bus.
 fn render(game: &Game, setting: &Setting, seed: u64, plays: impl Fn(usize) -> bool) -> Vec<[Vec<u32>; 2]> {
     let count = game.reports.len();
     let mut rng = Rng::new(seed);

@@ -1,5 +1,5 @@
-//! The shipped defaults forget: a path moved by 1e-12 m is felt and heard the same. Where a contact bounces for good it would be chaotic
-//! instead, and only levels could be compared.
+//! The shipped defaults forget: a path moved by 1e-12 m is felt and heard the same. Where a contact
+//! bounces for good it would be chaotic instead, and only levels could be compared.
 
 use crate::common;
 
@@ -68,7 +68,8 @@ fn a_path_moved_by_a_picometre_gives_the_same_render_with_the_shipped_defaults()
     }
 }
 
-/// What leaps from asperity to asperity forgets nothing: a ball of 20 g on 1 MN/m, a leg of 5 kg on a newton.
+/// What leaps from asperity to asperity forgets nothing: a ball of 20 g on 1 MN/m, a leg of 5 kg on
+/// a newton.
 const LEAP: [&str; 2] = ["rigid", "sole"];
 
 #[test]

@@ -1,5 +1,5 @@
-//! A contact that flickers (an end and a begin of the same contact at the same place, a frame apart)
-//! neither clicks nor sounds twice; a real landing does sound.
+//! A contact that flickers (an end and a begin of the same contact at the same place, a frame
+//! apart) neither clicks nor sounds twice; a real landing does sound.
 
 use crate::common;
 use crate::steps;
@@ -11,7 +11,8 @@ use common::{SIDE_M, grating, peak, rms, si_config, stroke};
 use std::collections::HashMap;
 use steps::largest_step;
 
-/// Loud, because modes fall asleep at −120 dB of full scale, which must lie far below −60 dB of the signal.
+/// Loud, because modes fall asleep at −120 dB of full scale, which must lie far below −60 dB of the
+/// signal.
 fn low_body() -> ModalModel {
     let mode = Mode { frequency_hz: 220.0, decay_per_s: 8.0, amplitude: 90.0, phase_rad: 0.0 };
     ModalModel::new(vec![mode], 0.01).unwrap()
@@ -29,7 +30,8 @@ fn take(log: &ContactLog) -> Render {
     offline::render(scene, renderer, log, &names, &Options::default()).unwrap()
 }
 
-/// The stroke, lifted off after half a second for `gap_s`, landing with `closing_m_s` at `uv_off` away.
+/// The stroke, lifted off after half a second for `gap_s`, landing with `closing_m_s` at `uv_off`
+/// away.
 fn flickering(gap_s: f64, closing_m_s: f64, uv_off: f64) -> ContactLog {
     let mut lines = stroke(SIDE_M, 0.1, 0.6, 1.0).lines;
     let at = lines.iter().position(|line| line.t > 0.5).unwrap();

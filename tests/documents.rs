@@ -88,3 +88,85 @@ fn no_test_is_left_out_of_its_crates_program() {
     }
     assert!(seen > 100, "{seen}");
 }
+
+/// Rust sources of the repository, bindings and tests among them.
+fn sources() -> Vec<PathBuf> {
+    let mut folders = vec![root()];
+    let mut found = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
+                folders.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
+/// Columns of a comment line; of a table's row, which cannot be broken, none.
+fn columns(line: &str) -> usize {
+    let text = line.trim_start().trim_start_matches(['/', '!']).trim_start();
+    if text.starts_with('|') { 0 } else { line.chars().count() }
+}
+
+#[test]
+fn no_comment_is_wider_than_a_hundred_columns() {
+    let sources = sources();
+    assert!(sources.len() > 800, "{}", sources.len());
+    let mut wide = Vec::new();
+    for path in sources {
+        let text = fs::read_to_string(&path).unwrap();
+        // Code and equations stand as they are.
+        let mut is_fenced = false;
+        for (number, line) in text.lines().enumerate() {
+            let said = line.trim_start();
+            let is_comment = said.starts_with("//");
+            is_fenced =
+                is_comment && (is_fenced ^ said.trim_start_matches(['/', '!', ' ']).starts_with("```"));
+            if is_comment && !is_fenced && columns(line) > 100 {
+                wide.push(format!("{}:{}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(wide.is_empty(), "{} comments are wider than 100 columns: {wide:#?}", wide.len());
+}
+
+/// First words of a documentation comment that name nothing.
+const NO_NOUN: [&str; 12] = [
+    "What", "Whether", "The same", "So many", "How", "As many", "Of", "Nobody", "That of", "Those", "Where",
+    "When",
+];
+/// Comments that begin so, in all: it only falls.
+const MOST_WITHOUT_A_NOUN: usize = 113;
+
+#[test]
+fn documentation_comments_begin_with_a_noun() {
+    let mut found = Vec::new();
+    for path in sources() {
+        let inside = path.strip_prefix(root()).unwrap();
+        if inside.iter().any(|part| part == "tests" || part == "benches" || part == "examples") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let mut before = "";
+        for (number, line) in text.lines().enumerate() {
+            let line = line.trim_start();
+            let kind = if line.starts_with("///") || line.starts_with("//!") { &line[..3] } else { "" };
+            let begins = !kind.is_empty() && kind != before;
+            before = kind;
+            let says = line[kind.len()..].trim_start();
+            let word = |first: &&str| {
+                says.strip_prefix(*first).is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
+            };
+            if begins && NO_NOUN.iter().any(|first| word(&first)) {
+                found.push(format!("{}:{}", inside.display(), number + 1));
+            }
+        }
+    }
+    println!("{found:#?}");
+    assert!(found.len() <= MOST_WITHOUT_A_NOUN, "{} comments begin without a noun", found.len());
+}

@@ -1,8 +1,9 @@
 //! What a tool and a finger feel and hear, beside published measurements of real materials.
 //!
-//! The figures are of the Penn Haptic Texture Toolkit (Culbertson, Lopez Delgado, Kuchenbecker 2014), of one half of its 100 materials: a
-//! steel-tipped tool stroked by hand, acceleration, 1 kHz. Nothing here was tuned on these surfaces one by one; medians are held, as one
-//! surface scatters by 3 dB.
+//! The figures are of the Penn Haptic Texture Toolkit (Culbertson, Lopez Delgado, Kuchenbecker
+//! 2014), of one half of its 100 materials: a steel-tipped tool stroked by hand, acceleration, 1
+//! kHz. Nothing here was tuned on these surfaces one by one; medians are held, as one surface
+//! scatters by 3 dB.
 
 use crate::common;
 
@@ -135,8 +136,8 @@ fn a_stylus_is_shaken_as_measured_tools_are() {
 /// Side of the abrasives, m.
 const ABRASIVE_M: f64 = 0.04;
 
-/// Grains of a nominal size: flat above twice the size, self-affine below (H 0.8); the rms is 0.27 of the size, as profilometers
-/// find on coated abrasives.
+/// Grains of a nominal size: flat above twice the size, self-affine below (H 0.8); the rms is 0.27
+/// of the size, as profilometers find on coated abrasives.
 fn abrasive(grain_m: f64) -> Surface {
     const SIDE: usize = 1024;
     let side_m = ABRASIVE_M;
@@ -176,7 +177,8 @@ fn coarser_abrasives_shake_a_stylus_more() {
         level
     });
     assert!(levels[0] > levels[1] && levels[1] > levels[2], "{levels:?}");
-    // A three-axis measurement holds what friction shakes, 3 to 5 dB on such ground; a normal force alone does not.
+    // A three-axis measurement holds what friction shakes, 3 to 5 dB on such ground; a normal force
+    // alone does not.
     let off_db = 20.0 * (levels[0] / COARSE_ABRASIVE_M_S2).log10();
     println!("coarse: {off_db:+.1} dB of a published coarse abrasive");
     assert!((-8.0..8.0).contains(&off_db), "{off_db} dB");

@@ -1,8 +1,8 @@
 //! What a fingertip is shaken by on fabric-like ground, beside measured fingers.
 //!
-//! Measured: bare fingers on four fabrics, acceleration; v^0.70–0.90, third octaves that rise by 6–22 dB from 25 Hz to 1 kHz (one
-//! person, uncalibrated); skin vibration grows with force. The map and two Brownian grounds were looked at when the skin was made; the weaves
-//! were not.
+//! Measured: bare fingers on four fabrics, acceleration; v^0.70–0.90, third octaves that rise by
+//! 6–22 dB from 25 Hz to 1 kHz (one person, uncalibrated); skin vibration grows with force. The map
+//! and two Brownian grounds were looked at when the skin was made; the weaves were not.
 
 use crate::common;
 

@@ -1,11 +1,13 @@
-//! Surfaces that lie in a body: one block of stuff, cut by every face; one mapping between places and texture coordinates.
+//! Surfaces that lie in a body: one block of stuff, cut by every face; one mapping between places
+//! and texture coordinates.
 
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, LogEvent, LogLine};
 use asperity::offline::{Options, render_tapped};
 use asperity::{ContactBlock, ContactSample, Engine, Tap};
 
-/// Three faces of a granite cube of 4 cm that meet in a corner, and a plate of granite somewhere else.
+/// Three faces of a granite cube of 4 cm that meet in a corner, and a plate of granite somewhere
+/// else.
 const CUBE: &str = r#"
 [[surface]]
 name = "top"
@@ -85,7 +87,8 @@ fn faces_of_a_cube_cut_from_one_block_are_continuous_over_their_edges() {
     let mut differ = 0.0f64;
     for k in 0..8 {
         let s = 0.07 + 0.12 * f64::from(k);
-        // Top and front share y = 0, z = 0; top and side share x = 4 cm; front and side share x = 4 cm, y = 0.
+        // Top and front share y = 0, z = 0; top and side share x = 4 cm; front and side share x = 4
+        // cm, y = 0.
         for ((a, at_a), (b, at_b)) in [
             (("top", [s, 0.0]), ("front", [s, 0.0])),
             (("top", [1.0, s]), ("side", [s, 0.0])),

@@ -1,5 +1,6 @@
-//! Seeded mutations of valid files, for a few seconds: whatever is in a file, reading it gives a result or
-//! a message. The same targets run under libFuzzer (`fuzz/`); what they found stays here as a case.
+//! Seeded mutations of valid files, for a few seconds: whatever is in a file, reading it gives a
+//! result or a message. The same targets run under libFuzzer (`fuzz/`); what they found stays here
+//! as a case.
 
 use crate::mutation;
 use crate::targets;

@@ -1,7 +1,9 @@
-//! Files import each other in one direction: no circle between files, none between the engine's folders.
+//! Files import each other in one direction: no circle between files, none between the engine's
+//! folders.
 //!
-//! A file is a module. What a child imports from its own ancestors does not count: they are one module in several files. A name that a module
-//! hands on (`pub use`) is an import of the file that it comes from.
+//! A file is a module. What a child imports from its own ancestors does not count: they are one
+//! module in several files. A name that a module hands on (`pub use`) is an import of the file that
+//! it comes from.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

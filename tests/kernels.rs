@@ -1,4 +1,5 @@
-//! `Config::kernel` pins the instruction set: what it names is what runs, on any processor that has it.
+//! `Config::kernel` pins the instruction set: what it names is what runs, on any processor that has
+//! it.
 
 use crate::common;
 
@@ -6,7 +7,8 @@ use asperity::dsp::simd::Level;
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Isa};
 use common::{bar, grating};
 
-/// Heard and felt of one stroke and one strike, from an engine built with this kernel, or with the fastest.
+/// Heard and felt of one stroke and one strike, from an engine built with this kernel, or with the
+/// fastest.
 fn render(kernel: Option<Isa>, block: usize) -> (Isa, Vec<f32>, Vec<f32>) {
     let Engine { mut scene, mut renderer, .. } = Config { kernel, ..Config::default() }.build().unwrap();
     let body = scene.add_body(bar()).unwrap();

@@ -1,4 +1,5 @@
-//! Latency from event to sample: at most one block and three samples in the engine; haptics and audio together.
+//! Latency from event to sample: at most one block and three samples in the engine; haptics and
+//! audio together.
 
 use crate::common;
 
@@ -51,7 +52,8 @@ fn a_stamped_event_sounds_at_its_own_sample() {
     }
 }
 
-/// The first sample that is more than what rounding leaves of the ring's two samples before a strike.
+/// The first sample that is more than what rounding leaves of the ring's two samples before a
+/// strike.
 fn onset(heard: &[f32]) -> usize {
     let loudest = heard.iter().fold(0.0_f32, |loudest, x| loudest.max(x.abs()));
     heard.iter().position(|x| x.abs() > 1e-5 * loudest).unwrap()
@@ -92,7 +94,8 @@ fn latencies(block: usize, events: usize) -> Vec<f64> {
         let onset = from + onset(&heard[from..]);
         found.push(onset as f64 - now);
     }
-    // An offline render has no latency: what its impact takes to rise is the mode's, not the engine's.
+    // An offline render has no latency: what its impact takes to rise is the mode's, not the
+    // engine's.
     let rise = rise_samples();
     found.iter_mut().for_each(|latency| *latency -= rise);
     found
@@ -139,7 +142,8 @@ fn one_micro_collision_is_heard_within_two_samples_after_it_is_felt() {
             let felt = felt.iter().position(|x| *x != 0.0).unwrap();
             let heard = onset(&heard);
             eprintln!("{excitation:?} from {begin}: felt {felt}, heard {heard}");
-            // A pulse is spread over the ring's two samples before the middle of its sound and two after it.
+            // A pulse is spread over the ring's two samples before the middle of its sound and two
+            // after it.
             assert!((felt..=felt + 2).contains(&heard), "{excitation:?} from {begin}: {felt}, {heard}");
         }
     }

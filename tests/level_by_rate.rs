@@ -1,4 +1,5 @@
-//! Rough strokes are equally loud and equally strong at every sample rate: means over seeds, because no two seeds collide alike.
+//! Rough strokes are equally loud and equally strong at every sample rate: means over seeds,
+//! because no two seeds collide alike.
 
 use crate::common;
 

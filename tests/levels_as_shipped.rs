@@ -1,5 +1,6 @@
-//! Levels that nobody wrote: another stroke than the reference one lands near the reference levels on every material, strikes that add up are
-//! kept from clipping, and bodies in pascals sound as loud as they say.
+//! Levels that nobody wrote: another stroke than the reference one lands near the reference levels
+//! on every material, strikes that add up are kept from clipping, and bodies in pascals sound as
+//! loud as they say.
 
 use crate::common;
 
@@ -259,7 +260,8 @@ fn bodies_in_pascals_sound_as_loud_as_they_say_and_leave_their_neighbours_alone(
         let lines = vec![strike(0.0, body), LogLine { t: 0.4, event: LogEvent::End { contact: 9 } }];
         peak(&rendered(&toml(audio), &files, &ContactLog { lines }).audio[0])
     };
-    // 10 g at 0.5 m/s that come back: 0.01 N·s, so the peak is some 0.4 Pa less what 2 ms of decay and the pulse take.
+    // 10 g at 0.5 m/s that come back: 0.01 N·s, so the peak is some 0.4 Pa less what 2 ms of decay
+    // and the pulse take.
     let plain = struck("gain = 1.0", "c");
     assert!((0.3..0.4).contains(&plain), "{plain}");
     for pascals in [0.5, 2.0] {

@@ -1,5 +1,6 @@
-//! Levels that nobody wrote, over the grid of speeds and forces on which tools are measured: nothing passes full scale, the limiter, which
-//! keeps it so, is seldom heard, and what nobody would feel or hear is listed and not lifted.
+//! Levels that nobody wrote, over the grid of speeds and forces on which tools are measured:
+//! nothing passes full scale, the limiter, which keeps it so, is seldom heard, and what nobody
+//! would feel or hear is listed and not lifted.
 
 use crate::common;
 use crate::slanting;
@@ -13,13 +14,15 @@ use common::strokes::{power, third_octaves_db};
 use slanting::{ceramic_scene, grounds, open, slanting_stroke};
 use std::f64::consts::TAU;
 
-/// The grid's ends; all nine cells of seven grounds and three probes are within 1.7 dB (189 of 189).
+/// The grid's ends; all nine cells of seven grounds and three probes are within 1.7 dB (189 of
+/// 189).
 const SPEEDS_M_S: [f64; 2] = [0.04, 0.24];
 const FORCES_N: [f64; 2] = [0.3, 5.0];
 /// What a limiter may take off in nineteen strokes of twenty, dB.
 const SELDOM_MORE_DB: f64 = 6.0;
 
-/// How far the strongest third octave of an acceleration, m/s² at sample value 1, lies above what fingers feel, dB.
+/// How far the strongest third octave of an acceleration, m/s² at sample value 1, lies above what
+/// fingers feel, dB.
 fn felt_db(render: &Render, full_scale_m_s2: f64) -> f64 {
     let thirds = third_octaves_db(&power(&render.haptic[0], render.sample_rate_hz), 25.0, 17);
     let over = |(band, db): (i32, f64)| {
@@ -30,7 +33,8 @@ fn felt_db(render: &Render, full_scale_m_s2: f64) -> f64 {
     (0..).zip(thirds).map(over).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How far the loudest third octave of a sound, 94 dB SPL at full scale, lies above what ears hear, dB.
+/// How far the loudest third octave of a sound, 94 dB SPL at full scale, lies above what ears hear,
+/// dB.
 fn heard_db(render: &Render) -> f64 {
     let thirds = third_octaves_db(&power(&render.audio[0], render.sample_rate_hz), 50.0, 25);
     let full_scale_db_spl = 20.0 * (LISTENING_PA / 2e-5).log10();

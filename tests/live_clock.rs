@@ -1,5 +1,5 @@
-//! A live game's clock: pauses, slow motion, restarts, stamps that are off, ticks in bursts. No strike is lost, no
-//! contact sticks, nothing falls silent, and the counts say what happened.
+//! A live game's clock: pauses, slow motion, restarts, stamps that are off, ticks in bursts. No
+//! strike is lost, no contact sticks, nothing falls silent, and the counts say what happened.
 
 use crate::common;
 
@@ -86,8 +86,8 @@ struct Tick {
     world_s: f64,
 }
 
-/// Plays ticks by frames, ends the contact and listens for another second. `silences` frames, in which nothing is
-/// reported, may be quiet.
+/// Plays ticks by frames, ends the contact and listens for another second. `silences` frames, in
+/// which nothing is reported, may be quiet.
 fn play(what: &str, frames: &[Vec<Tick>]) -> Stats {
     let mut game = Game::new();
     let (mut begun, mut ticks) = (false, 0);
@@ -213,7 +213,8 @@ fn a_game_that_pauses_goes_on_sounding() {
         let at = (from_s * RATE_HZ) as usize;
         rms(&game.haptic[at..at + 24_000])
     };
-    // It has glided on for want of news and comes back to where the game says it stands: at rest 1.25 s after the pause began.
+    // It has glided on for want of news and comes back to where the game says it stands: at rest
+    // 1.25 s after the pause began.
     assert!(felt(4.25) < 0.02 * felt(2.0), "a paused finger is felt: {} against {}", felt(4.25), felt(2.0));
     assert!(felt(6.0) > 0.3 * felt(2.0), "{} against {}", felt(6.0), felt(2.0));
 }

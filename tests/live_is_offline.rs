@@ -1,5 +1,5 @@
-//! A log rendered live, block by block with a device's clock, gives the same samples as the same log
-//! rendered offline.
+//! A log rendered live, block by block with a device's clock, gives the same samples as the same
+//! log rendered offline.
 
 use crate::common;
 

@@ -1,4 +1,5 @@
-//! The engine's tests in one program, but for three that must be alone: threads that are timed, and bits that other processors compare.
+//! The engine's tests in one program, but for three that must be alone: threads that are timed, and
+//! bits that other processors compare.
 
 mod accepted_ranges;
 mod another_rate;

@@ -1,4 +1,5 @@
-//! Many fingers: the engine tells every source its rate and its contacts, so that nobody feels nothing because a number was not passed on.
+//! Many fingers: the engine tells every source its rate and its contacts, so that nobody feels
+//! nothing because a number was not passed on.
 
 use asperity::texture::combine::Crossfade;
 use asperity::texture::height_field::{HeightField, PathBlock, Setup, SurfaceBlock};
@@ -28,7 +29,8 @@ impl Tap for Felt {
     }
 }
 
-/// So many fingers side by side stroke a surface for 0.4 s; what each of them felt, from highest to lowest, m.
+/// So many fingers side by side stroke a surface for 0.4 s; what each of them felt, from highest to
+/// lowest, m.
 fn strokes(surface: Surface, fingers: u64) -> Vec<f64> {
     strokes_beside(surface, fingers, || ())
 }
@@ -101,7 +103,8 @@ fn twenty_and_sixty_four_fingers_on_sand_a_brownian_path_and_a_solid_all_feel_it
 #[cfg(feature = "brownian")]
 #[test]
 fn fingers_on_a_brownian_path_each_go_their_own_way_along_it() {
-    // They all begin at its origin and go as fast: alike, where a shared state would send some of them on.
+    // They all begin at its origin and go as fast: alike, where a shared state would send some of
+    // them on.
     let felt = strokes(brownian_path(), 20);
     assert!(felt.iter().all(|x| (x - felt[0]).abs() < 1e-12), "{felt:?}");
 }

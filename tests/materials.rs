@@ -20,7 +20,8 @@ fn power(samples: &[f32]) -> f64 {
     samples.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / samples.len() as f64
 }
 
-/// Seconds in which a struck bar of 30 cm falls by 60 dB, from the energy of its sound run backwards (Schroeder), −5 to −25 dB.
+/// Seconds in which a struck bar of 30 cm falls by 60 dB, from the energy of its sound run
+/// backwards (Schroeder), −5 to −25 dB.
 fn ringing_s(material: Material) -> f64 {
     let mut engine = Config::default().build().unwrap();
     let body = engine.scene.add_body(Body::stock(Stock::Bar, material, 0.3).unwrap()).unwrap();

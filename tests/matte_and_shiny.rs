@@ -1,4 +1,5 @@
-//! Matte lies above shiny, felt as displacement and as acceleration, plain and as skin weighs it, at every speed of a hand.
+//! Matte lies above shiny, felt as displacement and as acceleration, plain and as skin weighs it,
+//! at every speed of a hand.
 
 use crate::common;
 
@@ -53,7 +54,8 @@ impl Tap for Heights {
     }
 }
 
-/// The law of the document, with the shipped growth and outer scale in it: power ∝ f^−α, α = 2.5 − 1.5 R.
+/// The law of the document, with the shipped growth and outer scale in it: power ∝ f^−α, α = 2.5 −
+/// 1.5 R.
 #[test]
 fn what_passes_under_the_finger_falls_by_3_db_alpha_an_octave_from_500_to_50_micrometres() {
     const SPEED_M_S: f64 = 0.1;
@@ -77,7 +79,8 @@ fn what_passes_under_the_finger_falls_by_3_db_alpha_an_octave_from_500_to_50_mic
         let at = |band: usize| (band as f64 - middle) / 3.0;
         let slope = (0..BANDS).map(|band| at(band) * db[band]).sum::<f64>()
             / (0..BANDS).map(|band| at(band).powi(2)).sum::<f64>();
-        // A third octave is the wider the higher it lies: 3.01 dB an octave less steep than its density.
+        // A third octave is the wider the higher it lies: 3.01 dB an octave less steep than its
+        // density.
         let alpha = 2.5 - 1.5 * roughness;
         let off = slope - 3.0103 * (1.0 - alpha);
         println!("R {roughness}: {slope:.2} dB an octave, {off:+.3} off the law of α {alpha:.2}");

@@ -215,8 +215,9 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     assert_eq!(late.blocks(200, None), whole.blocks(200, None));
     // The engine's own work is two thirds of its time.
     assert_eq!(late.blocks(31, Some(0.7)), whole.blocks(31, None));
-    // One late block, then neither late nor easy for half a second: modes go that nobody hears, which is not what errs least by waveform
-    // (`cli/tests/perceptual_order.rs` holds what is heard).
+    // One late block, then neither late nor easy for half a second: modes go that nobody hears,
+    // which is not what errs least by waveform (`cli/tests/perceptual_order.rs` holds what is
+    // heard).
     late.blocks(1, Some(0.9));
     whole.blocks(1, None);
     let (found, wanted) = (late.blocks(344, Some(0.7)), whole.blocks(344, None));
@@ -238,7 +239,8 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     whole.blocks(30, None);
     let few = late.scene.stats().contacts;
     assert!((1..=3).contains(&few), "{few} contacts are left");
-    // Easy again: nine levels of half a second; then every finger sounds again, and as if nothing had been.
+    // Easy again: nine levels of half a second; then every finger sounds again, and as if nothing
+    // had been.
     late.blocks(3600, Some(0.1));
     whole.blocks(3600, None);
     assert_eq!(late.scene.stats().contacts, 10, "the next move revives a contact");

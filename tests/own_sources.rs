@@ -29,7 +29,8 @@ struct Calls {
     presses: AtomicU64,
     stands: AtomicU64,
     set: AtomicU64,
-    /// Samples that asked for a ridden tip, for places of the body, and for the power of the relief.
+    /// Samples that asked for a ridden tip, for places of the body, and for the power of the
+    /// relief.
     tips: AtomicU64,
     places: AtomicU64,
     powers: AtomicU64,

@@ -1,6 +1,8 @@
-//! The list of parameters is what the reader of scene files accepts and what `docs/formats.md` says.
+//! The list of parameters is what the reader of scene files accepts and what `docs/formats.md`
+//! says.
 //!
-//! `ASPERITY_WRITE_DOCS=1 cargo test --release parameters::` writes the tables of the document anew.
+//! `ASPERITY_WRITE_DOCS=1 cargo test --release parameters::` writes the tables of the document
+//! anew.
 
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::parameters::{ALL, Changes, Parameter};

@@ -1,4 +1,5 @@
-//! Ports: what they give is what leaves, whoever reads late is told, and the audio half does not notice.
+//! Ports: what they give is what leaves, whoever reads late is told, and the audio half does not
+//! notice.
 
 use crate::common;
 use crate::counting;
@@ -14,7 +15,8 @@ use asperity_dsp::vibration_points::{PointDesign, PointState};
 use common::{bar, grating, plate};
 use counting::heap_operations;
 
-/// A hand on each of two channels, a bar on the second bus, three fingers: two on channel 0, one on 1.
+/// A hand on each of two channels, a bar on the second bus, three fingers: two on channel 0, one on
+/// 1.
 struct Game {
     scene: Scene,
     renderer: Renderer,
@@ -74,7 +76,8 @@ impl Game {
         }
     }
 
-    /// Steps while nobody reads, in blocks of 64 without a heap operation; what left on the first channel.
+    /// Steps while nobody reads, in blocks of 64 without a heap operation; what left on the first
+    /// channel.
     fn play_unread(&mut self, steps: u32) -> Vec<f32> {
         let (mut haptic, mut audio) = ([[0.0f32; 64]; 2], [[0.0f32; 64]; 2]);
         let (mut left, mut touched) = (Vec::new(), 0);

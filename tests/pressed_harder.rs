@@ -1,4 +1,5 @@
-//! What is pressed harder is felt more, in displacement as in acceleration, where nobody wrote a level; metres that a scene writes are the pad's own.
+//! What is pressed harder is felt more, in displacement as in acceleration, where nobody wrote a
+//! level; metres that a scene writes are the pad's own.
 
 use crate::common;
 use crate::slanting;
@@ -47,7 +48,8 @@ fn a_finger_that_is_pressed_harder_is_felt_more_step_by_step_on_every_ground() {
         let (n, levels) = growth("displacement");
         assert!(levels.windows(2).all(|pair| pair[1] > pair[0]), "{name}: {levels:?}");
         assert!((0.3..=0.4).contains(&n), "{name}: F^{n}");
-        // An accelerometer on a finger, whose tissue stiffens: a clean line near its resonance grows least.
+        // An accelerometer on a finger, whose tissue stiffens: a clean line near its resonance
+        // grows least.
         let (n, _) = growth("acceleration");
         assert!((0.0..=0.3).contains(&n), "{name}, acceleration: F^{n}");
     }
@@ -84,7 +86,8 @@ fn a_force_that_changes_is_felt_to_the_same_bits_in_any_blocks_and_without_a_ste
     for block in [1, 64, 333] {
         assert!(rendered(&toml, &files, &swelling, block).haptic[0] == whole, "blocks of {block} show");
     }
-    // The same stroke through the pad's own motion: their ratio is the growth, and it bends nowhere by more than a report can make it.
+    // The same stroke through the pad's own motion: their ratio is the growth, and it bends nowhere
+    // by more than a report can make it.
     let own = rendered(&toml.replace("limit", "felt_force_exponent = 0\nlimit"), &files, &swelling, 512)
         .haptic[0]
         .clone();

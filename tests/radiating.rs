@@ -108,8 +108,8 @@ fn a_blow_clicks_as_its_closed_form_says_the_same_in_any_split_and_louder_by_its
     let peak = click.iter().fold(0.0_f32, |peak, y| peak.max(y.abs()));
     let first = click.iter().position(|y| *y != 0.0).unwrap();
     let last = click.iter().rposition(|y| *y != 0.0).unwrap();
-    // 4 g of steel at 1 m/s: some tens of microseconds, so what a sample hears is the mean of a part of it.
-    // Sound lags by the impulse ring's two samples.
+    // 4 g of steel at 1 m/s: some tens of microseconds, so what a sample hears is the mean of a
+    // part of it. Sound lags by the impulse ring's two samples.
     assert!(first.abs_diff(443) <= 1 && last - first <= 6, "{first} to {last}");
     let body = loud.click.unwrap();
     assert!((body.volume_m3 / (0.06 * 0.04 * 0.02) - 1.0).abs() < 1e-9);

@@ -19,7 +19,8 @@ const PAUSE_S: f64 = 0.03;
 /// Strokes over one surface.
 const A_SURFACE: usize = 200;
 
-/// Fastest pad over what explains it: twice the ground's own speed, as of a light elastic mass, and the fall from the leash.
+/// Fastest pad over what explains it: twice the ground's own speed, as of a light elastic mass, and
+/// the fall from the leash.
 #[derive(Default)]
 struct Fastest {
     ratio: f64,

@@ -1,6 +1,6 @@
-//! Real maps, real pen strokes, published modes: everything renders, and the spectra are those of the
-//! surfaces. The importers are those of the example `real_input`. Long renders and pictures of the same
-//! input are made by that example; the bars here are what those showed.
+//! Real maps, real pen strokes, published modes: everything renders, and the spectra are those of
+//! the surfaces. The importers are those of the example `real_input`. Long renders and pictures of
+//! the same input are made by that example; the bars here are what those showed.
 
 use crate::common;
 use crate::modal_tables;

@@ -1,5 +1,5 @@
-//! The audio half never allocates or frees, whatever happens: events of every kind, surfaces and bodies
-//! swapped and removed while they sound, voices stolen, contacts lapsing, hostile numbers.
+//! The audio half never allocates or frees, whatever happens: events of every kind, surfaces and
+//! bodies swapped and removed while they sound, voices stolen, contacts lapsing, hostile numbers.
 
 use crate::closed_forms;
 use crate::common;

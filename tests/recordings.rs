@@ -1,4 +1,5 @@
-//! A recording holds the edits of a scene, in memory or streamed to a file, and renders to the bits of the game.
+//! A recording holds the edits of a scene, in memory or streamed to a file, and renders to the bits
+//! of the game.
 
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, LogEdit, LogEvent, Names};
@@ -238,8 +239,8 @@ fn what_a_reset_drops_is_not_in_the_recording() {
     assert_same_bits(&game, &replay(&log, &mut Edits::default()).unwrap());
 }
 
-/// Two fingers on one plate at 60 ticks a second, each tick rendered in a block of 735 frames (44.1 kHz), the first one in a shorter one: the
-/// order in which an engine like Godot calls.
+/// Two fingers on one plate at 60 ticks a second, each tick rendered in a block of 735 frames (44.1
+/// kHz), the first one in a shorter one: the order in which an engine like Godot calls.
 #[test]
 fn a_live_recording_of_two_fingers_and_a_blow_renders_to_the_bits_of_the_game() {
     let file = SceneFile::parse(TWO_FINGERS, Path::new("plate.toml")).unwrap();

@@ -1,5 +1,6 @@
-//! Reports as physics engines and trackers make them: steps without force, hitches, lost reports, slow first
-//! intervals, velocities that are always zero, teleports. None of it may be felt as a blow.
+//! Reports as physics engines and trackers make them: steps without force, hitches, lost reports,
+//! slow first intervals, velocities that are always zero, teleports. None of it may be felt as a
+//! blow.
 
 use crate::common;
 
@@ -126,7 +127,8 @@ fn hilly_and_matte(what: &str, log: &ContactLog) -> Render {
     is_felt_like_a_stroke(&format!("{what}, matte"), || plate(0.9), log)
 }
 
-/// [`hilly_and_matte`] of a stroke that goes on all the while: one contact, and the places in its trace go no faster.
+/// [`hilly_and_matte`] of a stroke that goes on all the while: one contact, and the places in its
+/// trace go no faster.
 fn goes_on(what: &str, log: &ContactLog) {
     for surface in [hills as fn() -> Surface, || plate(0.9)] {
         let take = is_felt_like_a_stroke(what, surface, log);

@@ -1,4 +1,5 @@
-//! A body's residual: every impact plays it once, in the contact's own sample, as loud as the strike.
+//! A body's residual: every impact plays it once, in the contact's own sample, as loud as the
+//! strike.
 
 use crate::common;
 
@@ -34,7 +35,8 @@ fn struck(model: ModalModel, speeds: &[f64], options: &Options) -> Render {
     offline::render(scene, renderer, &log, &names, options).unwrap()
 }
 
-/// The sample that an impact at 0.01003 s is heard from: sound lags the report by the impulse ring's two samples.
+/// The sample that an impact at 0.01003 s is heard from: sound lags the report by the impulse
+/// ring's two samples.
 fn start() -> usize {
     (0.01003_f64 * 44_100.0).round() as usize + 2
 }

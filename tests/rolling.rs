@@ -1,7 +1,9 @@
-//! What rolls is heard and felt otherwise than what slides as fast and as hard: darker, softer, its loudness less even.
+//! What rolls is heard and felt otherwise than what slides as fast and as hard: darker, softer, its
+//! loudness less even.
 //!
-//! Direction: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic", 2001), and what
-//! presses changes the slower the larger the ball (M. M. J. Houben, A. Kohlrausch, D. J. Hermes 2004, recorded balls).
+//! Direction: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry,
+//! D. K. Pai, "FoleyAutomatic", 2001), and what presses changes the slower the larger the ball (M.
+//! M. J. Houben, A. Kohlrausch, D. J. Hermes 2004, recorded balls).
 
 use crate::common;
 
@@ -41,7 +43,8 @@ fn heard(
     offline::render(scene, renderer, &ContactLog { lines }, &names, &options).unwrap()
 }
 
-/// How much the loudness of 5 ms frames varies, over its mean, and the mean rate of its changes, Hz.
+/// How much the loudness of 5 ms frames varies, over its mean, and the mean rate of its changes,
+/// Hz.
 fn envelope(x: &[f32], rate_hz: f64) -> (f64, f64) {
     let frame = (0.005 * rate_hz) as usize;
     let levels: Vec<f64> = x[(0.3 * rate_hz) as usize..].chunks_exact(frame).map(rms).collect();

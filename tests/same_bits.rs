@@ -1,7 +1,8 @@
 //! Bits of a whole engine on the portable level: heard and felt are the same on every processor.
 //!
-//! The figures are of x86-64; `.ci/run` renders them again in WebAssembly and, where it can, on 64-bit ARM. Nothing here calls a
-//! function of the standard library whose digits are the platform's.
+//! The figures are of x86-64; `.ci/run` renders them again in WebAssembly and, where it can, on
+//! 64-bit ARM. Nothing here calls a function of the standard library whose digits are the
+//! platform's.
 
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Isa, ModalModel, Mode,

@@ -94,8 +94,8 @@ fn touch(design: &SandDesign, hand: &Hand) -> (Render, Felt) {
     (render, felt)
 }
 
-/// The print is as deep as the law says, the resting finger is pressed by what presses it, and feels no
-/// blow on the way there.
+/// The print is as deep as the law says, the resting finger is pressed by what presses it, and
+/// feels no blow on the way there.
 fn assert_at_rest(name: &str, design: &SandDesign, hand: &Hand, blow: f64) {
     let (render, felt) = touch(design, hand);
     let depth_m = design.law.depth_m(hand.normal_force_n).min(design.depth_m);
@@ -159,7 +159,8 @@ fn a_finger_that_drags_and_stops_leaves_a_print_of_its_law_and_is_not_hit() {
     }
 }
 
-/// Largest contact force over the pressed one and largest haptic sample between two instants, and the fastest speed there.
+/// Largest contact force over the pressed one and largest haptic sample between two instants, and
+/// the fastest speed there.
 fn hardest(render: &Render, felt: &Felt, force_n: f64, (from_s, until_s): (f64, f64)) -> (f64, f64, f64) {
     let within = |sample: u64| (from_s..until_s).contains(&(sample as f64 / RATE_HZ));
     let rows = felt.rows.iter().filter(|(sample, ..)| within(*sample));
@@ -205,7 +206,8 @@ fn a_finger_stopped_dead_in_sand_is_not_hit_at_30_reports_a_second() {
     }
 }
 
-/// A finger that goes to and fro in its own furrow reads the level around it and not the furrow's bottom.
+/// A finger that goes to and fro in its own furrow reads the level around it and not the furrow's
+/// bottom.
 #[test]
 fn a_finger_that_goes_back_in_its_own_furrow_does_not_fall_in_with_every_frame() {
     for (normal_force_n, drags_m_s) in [(1.5, 0.1), (1.5, 0.4), (3.0, 0.4)] {

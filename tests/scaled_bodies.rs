@@ -17,7 +17,8 @@ fn a_scaled_stock_body_has_the_pitches_and_decays_of_the_one_that_is_made_so_lar
                     apart(a).total_cmp(&apart(b))
                 });
                 let nearest = nearest.unwrap();
-                // Shapes keep their proportions; the damped frequency of a mode that is not yet damped so moves a little.
+                // Shapes keep their proportions; the damped frequency of a mode that is not yet
+                // damped so moves a little.
                 let cents = 1200.0 * (nearest.frequency_hz / mode.frequency_hz).log2();
                 assert!(cents.abs() < 2.0, "{shape:?} x {size}: {} Hz, {cents} cents", mode.frequency_hz);
                 let decay = nearest.decay_per_s / mode.decay_per_s;

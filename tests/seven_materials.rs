@@ -1,6 +1,6 @@
 //! The seven solid-noise materials are told apart by what the finger feels: nearest centroid over
-//! third-octave spectra of the haptic channel, on strokes that were not used for the centroids. The example
-//! `seven_materials_blind` asks about many more strokes and pieces.
+//! third-octave spectra of the haptic channel, on strokes that were not used for the centroids. The
+//! example `seven_materials_blind` asks about many more strokes and pieces.
 
 #[path = "common/materials.rs"]
 mod materials;

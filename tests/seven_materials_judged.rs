@@ -1,7 +1,9 @@
-//! The seven solid-noise materials of the sandpaper study, judged by touch by the frozen observer with people's noise.
+//! The seven solid-noise materials of the sandpaper study, judged by touch by the frozen observer
+//! with people's noise.
 //!
-//! People named 95 of 112 (0.848); gravel and pebbles best, wood and granite least. What the observer says is printed and stands in
-//! `docs/feel.md`, whatever it is; held to is the control: shuffled labels at chance.
+//! People named 95 of 112 (0.848); gravel and pebbles best, wood and granite least. What the
+//! observer says is printed and stands in `docs/feel.md`, whatever it is; held to is the control:
+//! shuffled labels at chance.
 
 use crate::common;
 

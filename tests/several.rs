@@ -1,4 +1,5 @@
-//! Several contacts on one body, several surfaces on one body, one actuator a finger: everything adds up.
+//! Several contacts on one body, several surfaces on one body, one actuator a finger: everything
+//! adds up.
 
 use crate::common;
 
@@ -46,8 +47,8 @@ fn assert_adds_up(a: &ContactLog, b: &ContactLog) {
         .map(|(both, (first, second))| f64::from((both - (first + second)).abs()))
         .fold(0.0, f64::max);
     assert!(peak(&first.audio[0]) > 0.0 && peak(&second.audio[0]) > 0.0);
-    // The bank runs in f32, and modes fall asleep at an absolute level, each about −120 dB of full scale,
-    // later when both fingers keep them awake.
+    // The bank runs in f32, and modes fall asleep at an absolute level, each about −120 dB of full
+    // scale, later when both fingers keep them awake.
     assert!(worst <= 2e-5 + 1e-5 * peak(&both.audio[0]), "{worst} of {}", peak(&both.audio[0]));
     assert!(worst <= 0.1 * peak(&both.audio[0]), "{worst} of {}", peak(&both.audio[0]));
     assert!(both.haptic[0] == first.haptic[0], "the first finger's actuator feels the second finger");

@@ -47,7 +47,8 @@ fn begin_and_end_are_no_rougher_than_the_stroke_itself() {
     }
 }
 
-/// As a pen lifts: 125 reports a second, the force falls from 1.3 N to almost nothing in 40 ms, then the end.
+/// As a pen lifts: 125 reports a second, the force falls from 1.3 N to almost nothing in 40 ms,
+/// then the end.
 #[test]
 fn lifting_off_is_not_felt_as_a_thump() {
     let mut log = stroke(SIDE_M, 0.02, 1.3, 0.6);

@@ -1,4 +1,5 @@
-//! Soft ground: stones and shells that a finger meets in sand, and what a ball feels that stands in a cloth.
+//! Soft ground: stones and shells that a finger meets in sand, and what a ball feels that stands in
+//! a cloth.
 
 use crate::common;
 
@@ -166,7 +167,8 @@ fn bessel_j2(x: f64) -> f64 {
     sum
 }
 
-/// What a ball of this radius feels of waves on ground of this compliance, over what a point feels of them.
+/// What a ball of this radius feels of waves on ground of this compliance, over what a point feels
+/// of them.
 fn share_felt(count: usize, tip_radius_m: f64, compliance_m_n: f64, force_n: f64) -> f64 {
     let log = along_u(1.1, 0.01, 0.06, |uv| ContactSample {
         normal_force_n: force_n,

@@ -1,4 +1,5 @@
-//! What is heard of a stroke grows with speed and with force, over the grid on which tools are measured, but for a decibel of chance.
+//! What is heard of a stroke grows with speed and with force, over the grid on which tools are
+//! measured, but for a decibel of chance.
 
 use crate::common;
 

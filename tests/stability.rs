@@ -1,8 +1,8 @@
-//! Hard cases for the whole engine: no parameter a config accepts, and no event a game can send, makes it
-//! grow, stick or lose a number.
+//! Hard cases for the whole engine: no parameter a config accepts, and no event a game can send,
+//! makes it grow, stick or lose a number.
 //!
-//! The bound everywhere: what comes out is finite, the pad stays within a few times what the surface and the
-//! force can move it by, and once everything has ended the engine is silent.
+//! The bound everywhere: what comes out is finite, the pad stays within a few times what the
+//! surface and the force can move it by, and once everything has ended the engine is silent.
 
 use crate::common;
 
@@ -108,7 +108,8 @@ fn pressed(u: f64, speed_m_s: f64, normal_force_n: f64) -> ContactSample {
     }
 }
 
-/// A second of everything that is hard on a contact: light, unloaded, 0 → 5 N, standing still, jumping.
+/// A second of everything that is hard on a contact: light, unloaded, 0 → 5 N, standing still,
+/// jumping.
 fn hard_second(run: &mut Run) -> Peaks {
     let steps = [
         (0.00, 0.10, 0.02),
@@ -171,8 +172,8 @@ fn an_undamped_pad_that_bounces_for_ten_seconds_never_rises_higher_than_its_ener
             run.begin(ContactSample { closing_m_s: speed_m_s, ..pressed(0.2, 0.0, force_n) });
             let what = format!("{integrator:?}, {contact_stiffness_n_m} N/m");
             let peaks: Vec<f64> = (0..5).map(|_| f64::from(run.render(2.0).haptic)).collect();
-            // At its highest the pad is s above the finger: energy ≥ k s²/2 + F (x − s), so x ≤ energy/F + F/2k. No
-            // slack: the energy may grow by the integrators' own bars alone.
+            // At its highest the pad is s above the finger: energy ≥ k s²/2 + F (x − s), so x ≤
+            // energy/F + F/2k. No slack: the energy may grow by the integrators' own bars alone.
             let energy_j = 0.5 * (probe.pad_mass_kg + probe.finger_mass_kg) * speed_m_s * speed_m_s;
             let gain = if integrator == Integrator::ExactEvent { 1.002 } else { 1.0 + 1e-9 };
             let highest_m = gain * energy_j / force_n + 0.5 * force_n / probe.pad_stiffness_n_m;

@@ -213,7 +213,8 @@ fn any_split_into_blocks_rubs_the_same_bits_without_the_heap_and_who_has_to_wait
     let (whole, heap, stats) = busy(|| 60_000);
     assert!(whole.iter().all(|y| y.is_finite()) && whole.iter().any(|y| y.abs() > 1e-6));
     assert_eq!(heap, 0);
-    // The other hand comes at 0.22 s and waits until the first has gone at 0.55 s; a cell is 1.45 ms.
+    // The other hand comes at 0.22 s and waits until the first has gone at 0.55 s; a cell is 1.45
+    // ms.
     assert!((200..260).contains(&stats.rubs_crowded_out), "{}", stats.rubs_crowded_out);
     for block in [4096, 480, 64, 17, 1] {
         let (split, heap, _) = busy(|| block);
@@ -285,7 +286,8 @@ fn friction_on_what_nobody_knows_the_motion_of_is_refused_by_name() {
     assert!(error.starts_with("mu_kinetic"), "{error}");
     let heavy = Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).mass_kg(0.0);
     assert!(engine.scene.add_body(heavy).unwrap_err().to_string().starts_with("mass_kg"));
-    // Without friction among the exciters its numbers ring nothing and nobody has to know how the body moves.
+    // Without friction among the exciters its numbers ring nothing and nobody has to know how the
+    // body moves.
     engine.scene.add_surface(smooth(ROSIN).excitation(Excitation::BOTH).on(unknown)).unwrap();
     assert!(Excitation::FRICTION.has(Exciter::Friction));
 }

@@ -1,4 +1,5 @@
-//! Audio that stood still for a while, as when a headset reconnects: no bang of all that happened meanwhile.
+//! Audio that stood still for a while, as when a headset reconnects: no bang of all that happened
+//! meanwhile.
 
 use crate::common;
 

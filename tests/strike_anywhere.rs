@@ -221,7 +221,8 @@ fn an_impossible_place_is_refused_by_name() {
         let refused = engine.scene.report(0.0, ContactEvent::Impact(bad)).unwrap_err();
         assert!(refused.to_string().starts_with(field), "{refused}");
     }
-    // The nearest point of the body counts: a place far off is held at the limit of places, and counted.
+    // The nearest point of the body counts: a place far off is held at the limit of places, and
+    // counted.
     engine.scene.report(0.0, ContactEvent::Impact(Impact::on(body).at([1e9, 0.0, 0.0]))).unwrap();
     assert_eq!(engine.scene.stats().held, 1);
 }

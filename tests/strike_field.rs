@@ -55,7 +55,8 @@ fn a_mode_struck_on_its_node_line_is_silent() {
     assert!(worst <= -40.0, "{worst} dB");
 }
 
-/// Level errors of all modes at 1000 points of the surface, dB, sorted; those below a hundredth of the greatest level left out.
+/// Level errors of all modes at 1000 points of the surface, dB, sorted; those below a hundredth of
+/// the greatest level left out.
 fn errors(
     field: &StrikeField,
     point: impl Fn(&mut Rng) -> [f64; 3],

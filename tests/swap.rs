@@ -89,7 +89,8 @@ fn a_flat_plate_with_micro_relief_takes_over_without_a_step() {
     assert_no_step(&stroke, 0.3, "plate");
 }
 
-/// The sound of a stroke over ribs, its collisions alone, on a body that is of `before` and then replaced by one of `after`.
+/// The sound of a stroke over ribs, its collisions alone, on a body that is of `before` and then
+/// replaced by one of `after`.
 fn scraped(before: Material, after: Material) -> Vec<f32> {
     let asperity::Engine { mut scene, renderer, .. } = asperity::Config::default().build().unwrap();
     let body = scene.add_body(asperity::Body::new(common::bar()).of(before)).unwrap();

@@ -14,7 +14,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use steps::largest_step;
 
-/// Loud, because modes fall asleep at −120 dB of full scale, which must lie far below −60 dB of the signal.
+/// Loud, because modes fall asleep at −120 dB of full scale, which must lie far below −60 dB of the
+/// signal.
 fn low_body() -> ModalModel {
     let mode = Mode { frequency_hz: 220.0, decay_per_s: 8.0, amplitude: 90.0, phase_rad: 0.0 };
     ModalModel::new(vec![mode], 0.01).unwrap()

@@ -119,7 +119,8 @@ fn sixty_hertz_events_give_an_even_path_and_held_ones_do_not() {
     let (extrapolated, hermite, held) =
         (with(PathMode::Extrapolate), with(PathMode::Hermite), with(PathMode::Hold));
     assert!(extrapolated < 1e-3 && hermite < 1e-3, "{extrapolated} {hermite}");
-    // The paper's own path, kept to compare with: numpy finds 35.8 % (tests/independent/cli_evidence.py).
+    // The paper's own path, kept to compare with: numpy finds 35.8 %
+    // (tests/independent/cli_evidence.py).
     assert!((held - 0.358).abs() < 0.005, "{held}");
 }
 
@@ -170,7 +171,8 @@ fn the_same_place_is_the_same_on_the_way_back() {
         let (x, v) = if t < 0.8 { (0.03 * t, 0.03) } else { (0.03 * (1.6 - t), -0.03) };
         ([0.3 + x / SIDE_M, 0.37], [v, 0.0], 0.5)
     });
-    // At R = 0 the finest octaves are low, so that interpolating between samples costs under 1e-10 m.
+    // At R = 0 the finest octaves are low, so that interpolating between samples costs under 1e-10
+    // m.
     let (rows, _) = watch(si_config(), plate(0.0), &log);
     let part = |from: f64, to: f64| rows.iter().filter(move |row| row.t > from && row.t < to);
     let out: Vec<_> = part(0.1, 0.75).collect();

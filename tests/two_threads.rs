@@ -1,4 +1,5 @@
-//! What a second thread is worth. A file of its own, because a test that runs beside it would take the second processor away.
+//! What a second thread is worth. A file of its own, because a test that runs beside it would take
+//! the second processor away.
 
 mod common;
 #[path = "common/many_bodies.rs"]
@@ -7,7 +8,8 @@ mod many_bodies;
 use many_bodies::Strokes;
 use std::time::Instant;
 
-/// Least share of the best possible gain that sharing one engine's work has to reach; 0.93 on two cores that nobody else uses.
+/// Least share of the best possible gain that sharing one engine's work has to reach; 0.93 on two
+/// cores that nobody else uses.
 const LEAST_SHARE: f64 = 0.7;
 
 /// How often that is looked for.
@@ -26,7 +28,8 @@ fn run_s(strokes: &mut Strokes) -> f64 {
     began.elapsed().as_secs_f64()
 }
 
-/// Medians of fifteen turns: how many times as fast two threads are as one, and what two engines at once do.
+/// Medians of fifteen turns: how many times as fast two threads are as one, and what two engines at
+/// once do.
 fn gain_and_possible() -> (f64, f64) {
     let (mut one, mut other) = (Strokes::new(10, 1000, 1), Strokes::new(10, 1000, 1));
     let mut shared = Strokes::new(10, 1000, 2);
@@ -48,8 +51,8 @@ fn gain_and_possible() -> (f64, f64) {
 
 #[test]
 fn two_threads_on_one_engine_come_near_to_two_engines_that_share_nothing() {
-    // Whoever else wants the second processor hurts threads that wait for each other more than two that do not, for seconds at a time: the
-    // best of several tries is the engine's.
+    // Whoever else wants the second processor hurts threads that wait for each other more than two
+    // that do not, for seconds at a time: the best of several tries is the engine's.
     let mut best: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
         let (gain, possible) = gain_and_possible();

@@ -1,5 +1,6 @@
-//! Reliefs of the study are heard as such: by micro-collisions loud enough, with the force not far above, and with an envelope that beats with
-//! the waves, also where a finger follows them without leaping.
+//! Reliefs of the study are heard as such: by micro-collisions loud enough, with the force not far
+//! above, and with an envelope that beats with the waves, also where a finger follows them without
+//! leaping.
 
 use crate::common;
 

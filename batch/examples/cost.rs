@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p asperity-batch --example cost -- SPEC.toml [STROKES [TIMES]]`
 //!
-//! Each stroke is made several times and the least time of each phase is taken, so that what else runs on the machine does not count.
+//! Each stroke is made several times and the least time of each phase is taken, so that what else
+//! runs on the machine does not count.
 
 use asperity::Engine;
 use asperity::files::contact_log::ContactLog;

@@ -68,7 +68,8 @@ impl DataSet {
     /// Opens a folder for a specification: copies what the surfaces are made of, finds the levels.
     ///
     /// # Errors
-    /// When a surface cannot be used, the folder cannot be written, or holds shards of another build.
+    /// When a surface cannot be used, the folder cannot be written, or holds shards of another
+    /// build.
     pub fn open(spec: Spec, folder: &Path) -> Result<Self, FileError> {
         let fresh = Fresh::make(folder)?;
         Self::in_folder(spec, folder, fresh.clone()).inspect_err(|_| fresh.undo(folder))
@@ -195,7 +196,8 @@ impl DataSet {
         Ok(manifest)
     }
 
-    /// Tests whether a shard is there whole. One that was cut off is made again; one of another build is an error.
+    /// Tests whether a shard is there whole. One that was cut off is made again; one of another
+    /// build is an error.
     fn is_there(&self, path: &Path, strokes: u64) -> Result<bool, FileError> {
         if !path.exists() {
             return Ok(false);

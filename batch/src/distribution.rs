@@ -13,7 +13,8 @@ use crate::draw::Draws;
 use asperity::files::FileError;
 use toml::{Table, Value};
 
-/// A normal draw outside `within` is repeated at most this often; a range that so many miss is refused.
+/// A normal draw outside `within` is repeated at most this often; a range that so many miss is
+/// refused.
 const ATTEMPTS: u32 = 1000;
 
 /// The value of a field for one stroke: `written`, with what is a distribution drawn, however deep.

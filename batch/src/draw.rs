@@ -3,9 +3,10 @@
 //! ```text
 //! x = Philox₄ₓ₃₂₋₁₀(counter = (stroke, field), key = seed)
 //! ```
-//! A counter-based generator (J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC 2011)
-//! has no state: a number is a function of seed, stroke and the field's name. A stroke is therefore the same whatever the size of
-//! shards, their order and who makes them, and a new field changes no other.
+//! A counter-based generator (J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw: "Parallel random
+//! numbers: as easy as 1, 2, 3", SC 2011) has no state: a number is a function of seed, stroke and
+//! the field's name. A stroke is therefore the same whatever the size of shards, their order and
+//! who makes them, and a new field changes no other.
 
 /// Multipliers of the rounds (Salmon et al. 2011, section 3.3).
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];

@@ -1,7 +1,8 @@
 //! Data sets of rendered touch.
 //!
-//! A specification ([`spec`]) says what is touched and how; stroke *k* is a pure function of it and of *k*, a shard of it and of its
-//! index. Machines share nothing but a folder: each makes its shards, keeps those that are there, and lists all of them.
+//! A specification ([`spec`]) says what is touched and how; stroke *k* is a pure function of it and
+//! of *k*, a shard of it and of its index. Machines share nothing but a folder: each makes its
+//! shards, keeps those that are there, and lists all of them.
 //!
 //! ```text
 //! (spec, k) ─ draw ─► scene + contact log ─ asperity::offline ─► sound, vibration ─ codec, resample ─► record ─► shard ─► manifest

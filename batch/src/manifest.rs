@@ -1,7 +1,8 @@
 //! Manifest: `manifest.json`, what a data set holds and what made it.
 //!
-//! Each shard has a file `NAME.sha256` beside it, written after it. A run lists those and rewrites the manifest whole under a lock, so
-//! that runs on many machines that share a folder end with a manifest of all that is there.
+//! Each shard has a file `NAME.sha256` beside it, written after it. A run lists those and rewrites
+//! the manifest whole under a lock, so that runs on many machines that share a folder end with a
+//! manifest of all that is there.
 
 use crate::build::Build;
 use crate::force;
@@ -219,7 +220,8 @@ pub fn sum_name(file: &str) -> String {
     format!("{file}.sha256")
 }
 
-/// Holds the folder for as long as it is kept: nobody else begins a file, counts shards or clears up.
+/// Holds the folder for as long as it is kept: nobody else begins a file, counts shards or clears
+/// up.
 ///
 /// # Errors
 /// When the lock cannot be made.
@@ -231,8 +233,9 @@ pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
     Ok(held)
 }
 
-/// Removes what killed runs have left half-written: files that no process holds. Where the file system has no locks, those that
-/// nobody has written to within the hour. A file that cannot be removed harms nobody.
+/// Removes what killed runs have left half-written: files that no process holds. Where the file
+/// system has no locks, those that nobody has written to within the hour. A file that cannot be
+/// removed harms nobody.
 fn remove_left_behind(folder: &Path) {
     let is_old = |path: &Path| {
         let age = fs::metadata(path).and_then(|about| about.modified()).ok().and_then(|at| at.elapsed().ok());

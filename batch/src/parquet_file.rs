@@ -190,7 +190,8 @@ fn numbers_lists<W: Write + Send>(
     lists_of::<DoubleType, W>(group, rows, of)
 }
 
-/// Lists are written as one column of samples, with the places where a row begins: repetition 0. Definition 0 is an empty list.
+/// Lists are written as one column of samples, with the places where a row begins: repetition 0.
+/// Definition 0 is an empty list.
 fn lists_of<T: DataType, W: Write + Send>(
     group: &mut Group<'_, W>,
     rows: &[Record],

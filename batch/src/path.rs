@@ -6,8 +6,8 @@
 //! | `arc` | v t on a circle that turns by ψ in T, radius v T/ψ |
 //! | `back-and-forth` | v T/2π · sin(2π t/T) on a straight line: v is the highest speed |
 //!
-//! Start, direction and ψ (45° to 360°, either way) are drawn. At the edge of the surface the finger turns round: both coordinates are
-//! folded into the surface less a margin of 2 %.
+//! Start, direction and ψ (45° to 360°, either way) are drawn. At the edge of the surface the
+//! finger turns round: both coordinates are folded into the surface less a margin of 2 %.
 
 use crate::draw::Draws;
 use asperity::files::FileError;
@@ -62,7 +62,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Reports as a game makes them: contact 0 on the surface of that name and size (m), felt by actuator 0.
+    /// Reports as a game makes them: contact 0 on the surface of that name and size (m), felt by
+    /// actuator 0.
     #[must_use]
     pub fn log(&self, surface: &str, size_m: [f64; 2], draws: Draws) -> ContactLog {
         let way = Way::drawn(self, size_m, draws);
@@ -188,7 +189,8 @@ mod tests {
                         let moved = (uv(1) - uv(0)) * SIZE_M[axis] / (pair[1].0 - pair[0].0);
                         let told = pair.iter().map(|(_, sample)| sample.velocity_m_s.unwrap()[axis]);
                         let mean = told.sum::<f64>() / 2.0;
-                        // Where the finger turns round at an edge a mean of two velocities is none of them.
+                        // Where the finger turns round at an edge a mean of two velocities is none
+                        // of them.
                         if (moved - mean).abs() > 2e-3 {
                             turned += 1;
                         }

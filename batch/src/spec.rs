@@ -11,7 +11,8 @@
 //! [finger]
 //! speed_m_s = { log_uniform = [0.02, 0.3] }
 //! ```
-//! Every value under `surface`, `body`, `probe` and `finger` may be a distribution ([`crate::distribution`]).
+//! Every value under `surface`, `body`, `probe` and `finger` may be a distribution
+//! ([`crate::distribution`]).
 
 use crate::codec::Codec;
 use asperity::files::{FileError, nearest};
@@ -187,7 +188,8 @@ impl Format {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Split {
-    /// `surface`: all strokes of a surface are in one part, so that nothing is asked about what was learned; `stroke`: at random.
+    /// `surface`: all strokes of a surface are in one part, so that nothing is asked about what was
+    /// learned; `stroke`: at random.
     pub by: SplitBy,
     /// Share of `train`.
     pub train: f64,
@@ -295,7 +297,8 @@ impl Spec {
     /// Reads a specification.
     ///
     /// # Errors
-    /// When it cannot be read, is not TOML, or a key is unknown, missing or out of its range; the message names it.
+    /// When it cannot be read, is not TOML, or a key is unknown, missing or out of its range; the
+    /// message names it.
     pub fn load(path: &Path) -> Result<Self, FileError> {
         let text = fs::read_to_string(path).map_err(|error| FileError::read(path, &error))?;
         Self::parse(text, path)
@@ -337,7 +340,8 @@ impl Spec {
         Isa::from_name(&self.says.kernel).unwrap_or(Isa::Portable)
     }
 
-    /// Words that are drawn or looked up only when a stroke is rendered: distributions and materials.
+    /// Words that are drawn or looked up only when a stroke is rendered: distributions and
+    /// materials.
     fn check_words(&self) -> Result<(), FileError> {
         let says = &self.says;
         let Finger { speed_m_s, force_n, path, duration_s, reports_hz } = &says.finger;

@@ -100,7 +100,8 @@ pub struct Take {
     pub force: Option<ForceTable>,
 }
 
-/// The scene and the contact log of a record, rendered: what `asperity render` makes of them, and of the scene with another `output`.
+/// The scene and the contact log of a record, rendered: what `asperity render` makes of them, and
+/// of the scene with another `output`.
 ///
 /// # Errors
 /// When either cannot be used.
@@ -166,7 +167,8 @@ fn quantity(name: &str) -> Quantity {
     }
 }
 
-/// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.
+/// The levels of a data set: as its specification says, and where it is silent those that the level
+/// policy finds for its first choice.
 ///
 /// # Errors
 /// When that scene cannot be opened.

@@ -1,7 +1,9 @@
-//! Surfaces: what a specification lets fingers touch, copied beside the shards so that a data set holds all it is made of.
+//! Surfaces: what a specification lets fingers touch, copied beside the shards so that a data set
+//! holds all it is made of.
 //!
-//! A choice is a scene file, whose first surface is touched, or a table with the keys of a `[[surface]]`. Every picture and modes file
-//! that it names is copied to `DIR/surfaces/HASH/NAME` (HASH: of its bytes), and the choice's paths are written anew.
+//! A choice is a scene file, whose first surface is touched, or a table with the keys of a
+//! `[[surface]]`. Every picture and modes file that it names is copied to `DIR/surfaces/HASH/NAME`
+//! (HASH: of its bytes), and the choice's paths are written anew.
 
 use crate::spec::{Spec, SplitBy, sha256};
 use crate::whole_file;
@@ -162,7 +164,8 @@ fn replace_value(value: &mut Value, is_it: &dyn Fn(&str) -> bool, by: &str) {
     }
 }
 
-/// Copies a file below the data set's folder and returns its path there. What a modes file keeps beside itself comes along.
+/// Copies a file below the data set's folder and returns its path there. What a modes file keeps
+/// beside itself comes along.
 fn copy(path: &Path, folder: &Path) -> Result<String, FileError> {
     let bytes = fs::read(path).map_err(|error| FileError::read(path, &error))?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -184,8 +187,8 @@ fn shapes_beside(bytes: &[u8]) -> Option<String> {
     json.get("shapes_beside")?.as_str().map(str::to_owned)
 }
 
-/// Which part a stroke belongs to. By surface, the surfaces are put into an order by the seed and the parts cut from it, so that each
-/// has its share of surfaces to within one.
+/// Which part a stroke belongs to. By surface, the surfaces are put into an order by the seed and
+/// the parts cut from it, so that each has its share of surfaces to within one.
 #[must_use]
 pub fn split(spec: &Spec, surface: usize, surfaces: usize, stroke: u64) -> &'static str {
     let place = match spec.says.split.by {

@@ -21,7 +21,8 @@ pub struct Verified {
     pub missing: u64,
 }
 
-/// Compares every shard with the manifest, and renders a share of the strokes again. `progress` is told after each shard.
+/// Compares every shard with the manifest, and renders a share of the strokes again. `progress` is
+/// told after each shard.
 ///
 /// # Errors
 /// The first shard that is bad, in one line.

@@ -1,7 +1,8 @@
 //! WebDataset shards: a tar file, and in it files of one name a stroke.
 //!
-//! `ID.json` (split, surface, what was drawn, rates, levels, build), `ID.audio.npy` or `ID.audio.flac`, `ID.haptic.npy`
-//! and `ID.haptic_QUANTITY.npy`, `ID.force.npy` (rows by columns of [`crate::force`]), `ID.contacts.jsonl`, `ID.scene.toml`.
+//! `ID.json` (split, surface, what was drawn, rates, levels, build), `ID.audio.npy` or
+//! `ID.audio.flac`, `ID.haptic.npy` and `ID.haptic_QUANTITY.npy`, `ID.force.npy` (rows by columns
+//! of [`crate::force`]), `ID.contacts.jsonl`, `ID.scene.toml`.
 
 use crate::build::Build;
 use crate::force::ForceTable;
@@ -112,7 +113,8 @@ fn table_of(bytes: &[u8]) -> Option<ForceTable> {
 /// The head of a file of numpy's format, version 1.0.
 fn npy_head(kind: &str, shape: &str) -> Vec<u8> {
     let head = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
-    // Magic, version and length take ten bytes; the whole head is a multiple of 64 long and ends a line.
+    // Magic, version and length take ten bytes; the whole head is a multiple of 64 long and ends a
+    // line.
     let padded = (10 + head.len() + 1).next_multiple_of(64) - 10;
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((padded as u16).to_le_bytes());
@@ -130,7 +132,8 @@ fn samples_of(bytes: &[u8]) -> Option<Vec<f32>> {
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Calls `each` with the number and the files of every stroke of a shard, by what stands after the id.
+/// Calls `each` with the number and the files of every stroke of a shard, by what stands after the
+/// id.
 fn for_each(
     path: &Path,
     mut each: impl FnMut(u64, &str, Files) -> Result<(), FileError>,

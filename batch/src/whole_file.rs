@@ -19,8 +19,8 @@ pub fn write_with(
     let temporary = Temporary(path.with_file_name(temporary_name(path)));
     let write = || {
         let file = File::create(&temporary.0)?;
-        // Held until the file has its name. Who clears up after killed runs sees by it that this one is alive: the system
-        // takes a dead process's lock away.
+        // Held until the file has its name. Who clears up after killed runs sees by it that this
+        // one is alive: the system takes a dead process's lock away.
         let held = file.try_clone()?;
         let _ = held.try_lock();
         fill(BufWriter::with_capacity(1 << 18, file))?;
@@ -30,7 +30,8 @@ pub fn write_with(
     written.map_err(|error| FileError::write(path, &error))
 }
 
-/// A name that no other process on any machine that shares the folder, and no other thread, writes to at the same time.
+/// A name that no other process on any machine that shares the folder, and no other thread, writes
+/// to at the same time.
 fn temporary_name(path: &Path) -> String {
     static BEGAN: OnceLock<u128> = OnceLock::new();
     static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -40,7 +41,8 @@ fn temporary_name(path: &Path) -> String {
     format!(".{name}.{}-{began:x}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Removed when it is let go, also by work that is left by unwinding; once renamed there is nothing to remove.
+/// Removed when it is let go, also by work that is left by unwinding; once renamed there is nothing
+/// to remove.
 struct Temporary(PathBuf);
 
 impl Drop for Temporary {

@@ -9,7 +9,8 @@ use asperity_batch::{DataSet, Spec};
 use std::path::Path;
 use std::time::Instant;
 
-/// Drawing and opening, of rendering alone: 10 % by instructions, 12 to 16 % by time as the machine's memory is quick or slow on the day.
+/// Drawing and opening, of rendering alone: 10 % by instructions, 12 to 16 % by time as the
+/// machine's memory is quick or slow on the day.
 const MOST: f64 = 0.2;
 /// The same where others keep the machine's memory busy: opening is made of it, rendering is not.
 const MOST_BESIDE_OTHERS: f64 = 0.4;
@@ -47,7 +48,8 @@ fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() 
     assert!(share <= most, "{share}");
 }
 
-/// Whether more wants to run than there are processors, by the system's own word; where it has none, yes.
+/// Whether more wants to run than there are processors, by the system's own word; where it has
+/// none, yes.
 fn others_are_busy() -> bool {
     let processors = std::thread::available_parallelism().map_or(1.0, |count| count.get() as f64);
     let load = std::fs::read_to_string("/proc/loadavg").ok();

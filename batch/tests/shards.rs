@@ -193,7 +193,8 @@ fn wrong_specifications_are_refused_in_one_line_and_leave_no_shard() {
             .and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
         let error = made.err().unwrap_or_else(|| panic!("{to} was accepted")).to_string();
         assert!(error.contains(part) && !error.contains('\n'), "{to}: {error}");
-        // Strokes before the refused one may have made whole shards; without one the folder is gone again.
+        // Strokes before the refused one may have made whole shards; without one the folder is gone
+        // again.
         let left = fs::read_dir(folder.path().join("set")).into_iter().flatten().filter_map(Result::ok);
         let left: Vec<String> = left.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
         assert!(left.is_empty() || left.iter().any(|name| name.ends_with(".parquet")), "{to}: {left:?}");

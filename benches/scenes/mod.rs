@@ -68,7 +68,8 @@ pub fn raster(seed: u64) -> Raster {
     Raster { width: TEXELS, height: TEXELS, values: values.collect() }
 }
 
-/// A displacement map and a roughness map of [`TEXELS`]² each, `relief_m` high, and the micro-noise.
+/// A displacement map and a roughness map of [`TEXELS`]² each, `relief_m` high, and the
+/// micro-noise.
 pub fn map(relief_m: f64) -> HeightMap {
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m };
     HeightMap::new(&raster(3), extent, Wrap::Repeat)

@@ -20,7 +20,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/// Game seconds follow the device through pauses, restarts, slow motion and bursts of ticks: for a game that runs now.
+/// Game seconds follow the device through pauses, restarts, slow motion and bursts of ticks: for a
+/// game that runs now.
 #define ASP_CLOCK_LIVE 0
 
 /// Sample = seconds times rate: for renders and replays.
@@ -230,7 +231,8 @@
 /// Alpha.
 #define ASP_CHANNEL_A 4
 
-/// Version of the interface: a program that was compiled with another one is refused by `asp_check_abi`.
+/// Version of the interface: a program that was compiled with another one is refused by
+/// `asp_check_abi`.
 #define ASP_ABI 1
 
 /// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
@@ -263,8 +265,9 @@ typedef struct asp_mode {
     double phase_rad;
 } asp_mode;
 
-/// Asked for the file at `path` (as the scene writes it, relative to the scene file). Puts its bytes with `asp_sink_bytes`, or a decoded
-/// picture with `asp_sink_picture`, and gives 0; anything else: there is no such file.
+/// Asked for the file at `path` (as the scene writes it, relative to the scene file). Puts its
+/// bytes with `asp_sink_bytes`, or a decoded picture with `asp_sink_picture`, and gives 0; anything
+/// else: there is no such file.
 typedef int32_t (*asp_read)(void *user, const char *path, struct asp_sink *sink);
 
 /// Where files lie; `asp_files_init` fills it. NULL wherever it is asked for means the disk.
@@ -275,11 +278,13 @@ typedef struct asp_files {
     uint32_t reserved;
     /// Given to `read` as it is.
     void *user;
-    /// Called on the thread that asked for something to be loaded, before that call returns; NULL = the disk.
+    /// Called on the thread that asked for something to be loaded, before that call returns; NULL =
+    /// the disk.
     asp_read read;
 } asp_files;
 
-/// A body; `asp_body_init` fills it. Its modes are one of `stock`, `modes`, `modes_json` and those that `table` names; none = silent.
+/// A body; `asp_body_init` fills it. Its modes are one of `stock`, `modes`, `modes_json` and those
+/// that `table` names; none = silent.
 typedef struct asp_body {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -293,7 +298,8 @@ typedef struct asp_body {
     double gain;
     /// What `asp_find`, logs and recordings call it; NULL = nothing.
     const char *name;
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door".
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can",
+    /// "bottle", "pan", "barrel" or "door".
     const char *stock;
     /// Longest side or diameter of the stock shape, m.
     double size_m;
@@ -303,12 +309,14 @@ typedef struct asp_body {
     double impulse_n_s;
     /// The text of a modes file.
     const char *modes_json;
-    /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, ...; the fields above count more.
+    /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, ...; the
+    /// fields above count more.
     const char *table;
     /// Where files lie that `table` names; NULL = the disk.
     const struct asp_files *files;
-    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as `table` says, else as the level policy has found
-    /// for the bodies of a scene file, else 1. (Since 0.1.1.)
+    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
+    /// `table` says, else as the level policy has found for the bodies of a scene file, else 1.
+    /// (Since 0.1.1.)
     double strike_gain;
 } asp_body;
 
@@ -322,7 +330,8 @@ typedef struct asp_config {
     double sample_rate_hz;
     /// Seed of the micro-noise; 0 = as `more` or the scene file says, else 1.
     uint64_t seed;
-    /// Haptic channels, 1 to 64; 0 = as `more` or the scene file says, else one of 0.1 mm at full scale.
+    /// Haptic channels, 1 to 64; 0 = as `more` or the scene file says, else one of 0.1 mm at full
+    /// scale.
     uint32_t haptic_channels;
     /// Audio buses, 1 to 64; 0 = as `more` or the scene file says, else one.
     uint32_t audio_buses;
@@ -330,12 +339,14 @@ typedef struct asp_config {
     uint32_t kernel;
     /// 0.
     uint32_t reserved;
-    /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's defaults. The fields above count more.
-    /// Not beside a scene file, which says these things itself.
+    /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's
+    /// defaults. The fields above count more. Not beside a scene file, which says these things
+    /// itself.
     const char *more;
 } asp_config;
 
-/// One report; `asp_event_init` fills it with "not told", `asp_begin`, `asp_move`, `asp_end` and `asp_impact` with the usual.
+/// One report; `asp_event_init` fills it with "not told", `asp_begin`, `asp_move`, `asp_end` and
+/// `asp_impact` with the usual.
 typedef struct asp_event {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -355,7 +366,8 @@ typedef struct asp_event {
     uint64_t probe;
     /// begin, impact: the haptic channel that feels it; -1 = nobody.
     int32_t actuator;
-    /// impact: what the striker is made of, ASP_MATERIAL_...; ASP_MATERIAL_CUSTOM = as the three striker_ numbers say.
+    /// impact: what the striker is made of, ASP_MATERIAL_...; ASP_MATERIAL_CUSTOM = as the three
+    /// striker_ numbers say.
     uint32_t striker;
     /// impact: which of the body's strike positions, from 0.
     uint32_t position;
@@ -369,7 +381,8 @@ typedef struct asp_event {
     double normal_force_n;
     /// begin: approach speed at landing, m/s.
     double closing_m_s;
-    /// begin, move: how deep the tip stands below the untouched surface, m, where that gives way; NAN = the force counts.
+    /// begin, move: how deep the tip stands below the untouched surface, m, where that gives way;
+    /// NAN = the force counts.
     double depth_m;
     /// Place in the body's frame, m; NAN = not told.
     double at_m[3];
@@ -393,8 +406,8 @@ typedef struct asp_event {
     double striker_poisson;
     /// Its density, kg/m3.
     double striker_density_kg_m3;
-    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN = as fast as it moves: a stroke. Each
-    /// report tells it anew. (Since 0.1.1.)
+    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN
+    /// = as fast as it moves: a stroke. Each report tells it anew. (Since 0.1.1.)
     double slip_m_s;
     /// begin, move: radius of what rolls, m; NAN = the probe's tip, at least 8 mm. (Since 0.1.1.)
     double roll_radius_m;
@@ -560,12 +573,14 @@ typedef struct asp_stats {
     uint64_t contacts;
     /// By how much the peak limiters have turned down at most, whole dB. (Since 0.1.1.)
     uint64_t limiter_db;
-    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples. (Since 0.1.1.)
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
+    /// samples. (Since 0.1.1.)
     uint64_t rubs_crowded_out;
 } asp_stats;
 
-/// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the body's material or the engine's default
-/// says it. Without `heights` and without a source in `table` it is a plane with the finish of its body's material.
+/// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the
+/// body's material or the engine's default says it. Without `heights` and without a source in
+/// `table` it is a plane with the finish of its body's material.
 typedef struct asp_surface {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -579,7 +594,8 @@ typedef struct asp_surface {
     double width_m;
     /// What uv 0 to 1 spans along v, m.
     double height_m;
-    /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are metres.
+    /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are
+    /// metres.
     double relief_m;
     /// Displacement map.
     struct asp_image heights;
@@ -597,7 +613,8 @@ typedef struct asp_surface {
     double friction;
     /// How far it gives way, m/N; 0 = hard.
     double compliance_m_n;
-    /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { ... }, files of maps, ...; the fields above count more.
+    /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { ... }, files of maps,
+    /// ...; the fields above count more.
     const char *table;
     /// Where files lie that `table` names; NULL = the disk.
     const struct asp_files *files;
@@ -607,17 +624,16 @@ typedef struct asp_surface {
 extern "C" {
 #endif // __cplusplus
 
-/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that never was fills nothing.
-void asp_init_body(struct asp_body *body,
-                   uint32_t size);
+/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that
+/// never was fills nothing.
+void asp_init_body(struct asp_body *body, uint32_t size);
 
 /// Adds a body and gives its id, which is never 0.
 int32_t asp_add_body(struct asp_scene *scene, const struct asp_body *body, uint64_t *id);
 
-/// Gives a body other modes, material, bus and gain while it sounds; what rings rings out under the new. Its name stays.
-int32_t asp_replace_body(struct asp_scene *scene,
-                         uint64_t id,
-                         const struct asp_body *body);
+/// Gives a body other modes, material, bus and gain while it sounds; what rings rings out under the
+/// new. Its name stays.
+int32_t asp_replace_body(struct asp_scene *scene, uint64_t id, const struct asp_body *body);
 
 /// Takes a body away; it rings out until it sleeps. Its id is refused from then on.
 int32_t asp_remove_body(struct asp_scene *scene, uint64_t id);
@@ -625,11 +641,9 @@ int32_t asp_remove_body(struct asp_scene *scene, uint64_t id);
 /// Lets a body sound on another bus, without a click.
 int32_t asp_set_body_bus(struct asp_scene *scene, uint64_t id, uint32_t bus);
 
-/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no longer. At most four: a bus for each listener.
-int32_t asp_set_body_send(struct asp_scene *scene,
-                          uint64_t id,
-                          uint32_t bus,
-                          double gain);
+/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no
+/// longer. At most four: a bus for each listener.
+int32_t asp_set_body_send(struct asp_scene *scene, uint64_t id, uint32_t bus, double gain);
 
 /// Makes a body louder or softer, linear, 0 to 1000, without a step.
 int32_t asp_set_body_gain(struct asp_scene *scene, uint64_t id, double gain);
@@ -640,10 +654,9 @@ void asp_config_init(struct asp_config *config);
 /// Builds an engine: one half for the game's thread, one for the audio thread.
 int32_t asp_build(const struct asp_config *config, struct asp_scene **scene, struct asp_renderer **renderer);
 
-/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an
-/// impact. A size that never was fills nothing.
-void asp_init_event(struct asp_event *event,
-                    uint32_t size);
+/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free
+/// blow of 4 g of steel at 1 m/s where it is an impact. A size that never was fills nothing.
+void asp_init_event(struct asp_event *event, uint32_t size);
 
 /// Fills files with its size and the disk.
 void asp_files_init(struct asp_files *files);
@@ -654,10 +667,12 @@ int32_t asp_sink_bytes(struct asp_sink *sink, const uint8_t *bytes, size_t size)
 /// Puts a picture that was asked for and is decoded already; it is copied.
 int32_t asp_sink_picture(struct asp_sink *sink, const struct asp_image *image);
 
-/// Frees a scene; null is nothing. Its renderer and ports may live on: they ring out. Not on the audio thread.
+/// Frees a scene; null is nothing. Its renderer and ports may live on: they ring out. Not on the
+/// audio thread.
 int32_t asp_scene_free(struct asp_scene *scene);
 
-/// Frees a renderer; null is nothing. Waits until no other thread renders with it. Not on the audio thread.
+/// Frees a renderer; null is nothing. Waits until no other thread renders with it. Not on the audio
+/// thread.
 int32_t asp_renderer_free(struct asp_renderer *renderer);
 
 /// Closes a port; null is nothing.
@@ -669,24 +684,25 @@ int32_t asp_set_haptic_gain(struct asp_scene *scene, uint32_t channel, double ga
 /// The gain of an audio bus, 0 to 1e6.
 int32_t asp_set_bus_gain(struct asp_scene *scene, uint32_t bus, double gain);
 
-/// All that is felt and heard fades within 20 ms (not 0), or comes back (0); everything goes on meanwhile.
+/// All that is felt and heard fades within 20 ms (not 0), or comes back (0); everything goes on
+/// meanwhile.
 int32_t asp_set_muted(struct asp_scene *scene, uint32_t muted);
 
 /// The game stands still (not 0): contacts wait, however long. Or it goes on (0).
 int32_t asp_set_paused(struct asp_scene *scene, uint32_t paused);
 
-/// Every contact ends and what rings is damped within a tenth of a second: for a cut, a menu, the end of a level.
+/// Every contact ends and what rings is damped within a tenth of a second: for a cut, a menu, the
+/// end of a level.
 int32_t asp_fade_all(struct asp_scene *scene);
 
-/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_... `of` says of what.
-int32_t asp_get_level(struct asp_scene *scene,
-                      uint32_t kind,
-                      uint64_t of,
-                      double *level);
+/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_...
+/// `of` says of what.
+int32_t asp_get_level(struct asp_scene *scene, uint32_t kind, uint64_t of, double *level);
 
-/// Builds the engine of a scene file. `text` NULL: `path` is read from `files`; else `text` is the scene, and `path` says only where it
-/// would lie. `files` NULL: the disk. Of `config` (NULL: the defaults) clock, rate, seed and kernel count. With a live clock, sand is
-/// simulated on threads of its own and every bus has a limiter, as before a sound card.
+/// Builds the engine of a scene file. `text` NULL: `path` is read from `files`; else `text` is the
+/// scene, and `path` says only where it would lie. `files` NULL: the disk. Of `config` (NULL: the
+/// defaults) clock, rate, seed and kernel count. With a live clock, sand is simulated on threads of
+/// its own and every bus has a limiter, as before a sound card.
 int32_t asp_load(const char *path,
                  const char *text,
                  const struct asp_files *files,
@@ -694,12 +710,14 @@ int32_t asp_load(const char *path,
                  struct asp_scene **scene,
                  struct asp_renderer **renderer);
 
-/// The id of a surface, body or probe by its name in the scene file, or by the name it was added with.
+/// The id of a surface, body or probe by its name in the scene file, or by the name it was added
+/// with.
 int32_t asp_find(struct asp_scene *scene, uint32_t kind, const char *name, uint64_t *id);
 
-/// Reads the text of a contact log (JSON Lines; docs/formats.md) into `events` and `times_s`, both of `capacity`, with the ids that the
-/// scene's names stand for. `count` is how many events the log holds: call once with a capacity of 0 to learn it. `size` is
-/// sizeof(asp_event). A log that holds edits of a scene is refused.
+/// Reads the text of a contact log (JSON Lines; docs/formats.md) into `events` and `times_s`, both
+/// of `capacity`, with the ids that the scene's names stand for. `count` is how many events the log
+/// holds: call once with a capacity of 0 to learn it. `size` is sizeof(asp_event). A log that holds
+/// edits of a scene is refused.
 int32_t asp_read_log(struct asp_scene *scene,
                      const char *text,
                      struct asp_event *events,
@@ -717,13 +735,13 @@ void asp_player_config_init(struct asp_player_config *config);
 /// Fills a report with its size.
 void asp_player_report_init(struct asp_player_report *report);
 
-/// Plays until `asp_player_stop`. The renderer belongs to the player from then on: its handle ends, also where the device refuses. Where a
-/// sentence is refused before (a map, a build without sound cards) it stays.
-int32_t asp_play(struct asp_renderer *renderer,
-                 const struct asp_player_config *config,
-                 struct asp_player **player);
+/// Plays until `asp_player_stop`. The renderer belongs to the player from then on: its handle ends,
+/// also where the device refuses. Where a sentence is refused before (a map, a build without sound
+/// cards) it stays.
+int32_t asp_play(struct asp_renderer *renderer, const struct asp_player_config *config, struct asp_player **player);
 
-/// Which device plays, or why nobody hears it. `size` is the room in `words`, bytes; what does not fit is cut.
+/// Which device plays, or why nobody hears it. `size` is the room in `words`, bytes; what does not
+/// fit is cut.
 int32_t asp_player_device(struct asp_player *player, char *words, uint32_t size);
 
 /// What the player met so far; one that plays to nobody tells it only when it is stopped.
@@ -744,10 +762,9 @@ uint32_t asp_port_pcm(struct asp_port *port, float *samples, uint32_t count);
 /// The oldest points that are left, at most `count`; how many there were.
 uint32_t asp_port_points(struct asp_port *port, struct asp_point *points, uint32_t count);
 
-/// The newest levels of a heavy and a light motor, as peaks of sines in the unit of the samples; 0 where there are none.
-void asp_port_levels(struct asp_port *port,
-                     double *heavy,
-                     double *light);
+/// The newest levels of a heavy and a light motor, as peaks of sines in the unit of the samples; 0
+/// where there are none.
+void asp_port_levels(struct asp_port *port, double *heavy, double *light);
 
 /// The oldest forces that are left, at most `count`; how many there were.
 uint32_t asp_port_forces(struct asp_port *port, struct asp_force *forces, uint32_t count);
@@ -755,21 +772,22 @@ uint32_t asp_port_forces(struct asp_port *port, struct asp_force *forces, uint32
 /// How much was overwritten before it was read: samples, points, levels or forces.
 uint64_t asp_port_lost(struct asp_port *port);
 
-/// Adds a probe and gives its id, which is never 0. `table` is what a scene file's `[[probe]]` says, TOML: preset = "stylus" (fingertip,
-/// fingernail, stylus, sole, rigid), and what differs from it. `name` may be NULL. It stays as long as the scene.
-int32_t asp_add_probe(struct asp_scene *scene,
-                      const char *table,
-                      const char *name,
-                      uint64_t *id);
+/// Adds a probe and gives its id, which is never 0. `table` is what a scene file's `[[probe]]`
+/// says, TOML: preset = "stylus" (fingertip, fingernail, stylus, sole, rigid), and what differs
+/// from it. `name` may be NULL. It stays as long as the scene.
+int32_t asp_add_probe(struct asp_scene *scene, const char *table, const char *name, uint64_t *id);
 
-/// Records from now on, in memory, what is reported and how the scene is edited, each with the time at which the engine applies it.
+/// Records from now on, in memory, what is reported and how the scene is edited, each with the time
+/// at which the engine applies it.
 int32_t asp_record_start(struct asp_scene *scene);
 
-/// Ends the recording and writes it to `path` (JSON Lines); it is whole or not there. NULL throws it away.
+/// Ends the recording and writes it to `path` (JSON Lines); it is whole or not there. NULL throws
+/// it away.
 int32_t asp_record_stop(struct asp_scene *scene, const char *path);
 
-/// Renders the next `frames`: haptic channel i into `haptic[i]`, audio bus i into `audio[i]`. Pointers may be NULL, and channels that the
-/// engine does not have are silent. A handle that cannot be used, more than 64 channels or more than 2^24 frames: silence, or nothing.
+/// Renders the next `frames`: haptic channel i into `haptic[i]`, audio bus i into `audio[i]`.
+/// Pointers may be NULL, and channels that the engine does not have are silent. A handle that
+/// cannot be used, more than 64 channels or more than 2^24 frames: silence, or nothing.
 void asp_render(struct asp_renderer *renderer,
                 float *const *haptic,
                 uint32_t haptic_channels,
@@ -777,34 +795,35 @@ void asp_render(struct asp_renderer *renderer,
                 uint32_t audio_buses,
                 uint32_t frames);
 
-/// Renders the next `frames` into an interleaved buffer of `channels` channels. `map[c]` says what channel c carries: an audio bus,
-/// ASP_HAPTIC + a haptic channel, or ASP_SILENT. `map` NULL: all buses on channels 0 and 1, haptic channels from 2 on.
+/// Renders the next `frames` into an interleaved buffer of `channels` channels. `map[c]` says what
+/// channel c carries: an audio bus, ASP_HAPTIC + a haptic channel, or ASP_SILENT. `map` NULL: all
+/// buses on channels 0 and 1, haptic channels from 2 on.
 void asp_render_interleaved(struct asp_renderer *renderer,
                             float *out,
                             uint32_t channels,
                             uint32_t frames,
                             const int32_t *map);
 
-/// Tells the engine which share of its time the last block took (1 = all of it); above that the least audible work is left out. For the
-/// audio thread.
-void asp_report_load(struct asp_renderer *renderer,
-                     float load);
+/// Tells the engine which share of its time the last block took (1 = all of it); above that the
+/// least audible work is left out. For the audio thread.
+void asp_report_load(struct asp_renderer *renderer, float load);
 
-/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples all of them lag behind the stamps of
-/// their events (sound by two samples of the rate inside more). Any of the places may be NULL.
+/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples
+/// all of them lag behind the stamps of their events (sound by two samples of the rate inside
+/// more). Any of the places may be NULL.
 int32_t asp_signals(struct asp_renderer *renderer,
                     uint32_t *haptic_channels,
                     uint32_t *audio_buses,
                     double *sample_rate_hz,
                     uint32_t *latency_samples);
 
-/// Goes on at another rate, after a headset was plugged in: ids, contacts and gains stay, ports end. Not while the audio thread renders.
-int32_t asp_set_sample_rate(struct asp_scene *scene,
-                            struct asp_renderer *renderer,
-                            double sample_rate_hz);
+/// Goes on at another rate, after a headset was plugged in: ids, contacts and gains stay, ports
+/// end. Not while the audio thread renders.
+int32_t asp_set_sample_rate(struct asp_scene *scene, struct asp_renderer *renderer, double sample_rate_hz);
 
-/// Reports what happened at game time `time_s`: `count` events of `size` bytes each (sizeof(asp_event)). All are tried; `taken` (may be
-/// NULL) is how many were accepted, and the first refusal is the status. Never blocks.
+/// Reports what happened at game time `time_s`: `count` events of `size` bytes each
+/// (sizeof(asp_event)). All are tried; `taken` (may be NULL) is how many were accepted, and the
+/// first refusal is the status. Never blocks.
 int32_t asp_report(struct asp_scene *scene,
                    double time_s,
                    const struct asp_event *events,
@@ -812,14 +831,16 @@ int32_t asp_report(struct asp_scene *scene,
                    uint32_t size,
                    uint32_t *taken);
 
-/// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time. For a level that restarts, under
-/// the exact clock; a live one finds out by itself.
+/// Game time begins anew: the next report holds at the sample that is rendered next, whatever its
+/// time. For a level that restarts, under the exact clock; a live one finds out by itself.
 int32_t asp_reset(struct asp_scene *scene);
 
-/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact clock.
+/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
+/// clock.
 int32_t asp_set_time_scale(struct asp_scene *scene, double scale);
 
-/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills nothing.
+/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills
+/// nothing.
 void asp_init_stats(struct asp_stats *stats, uint32_t size);
 
 /// What the engine did so far.
@@ -828,16 +849,16 @@ int32_t asp_get_stats(struct asp_scene *scene, struct asp_stats *stats);
 /// Peak level of each bus as a meter shows it, linear; buses beyond those of the scene are 0.
 int32_t asp_bus_peaks(struct asp_scene *scene, float *peaks, uint32_t count);
 
-/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when nothing does. `size` is the room in
-/// `reasons`, bytes; what does not fit is cut.
-int32_t asp_why_silent(struct asp_scene *scene,
-                       char *reasons,
-                       uint32_t size);
+/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when
+/// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
+int32_t asp_why_silent(struct asp_scene *scene, char *reasons, uint32_t size);
 
-/// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL) is how many things.
+/// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL)
+/// is how many things.
 int32_t asp_collect(struct asp_scene *scene, uint32_t *freed);
 
-/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds until the thread's next call.
+/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds
+/// until the thread's next call.
 const char *asp_last_error(void);
 
 /// Fills a surface with its size and the defaults; its width and height have to be told.
@@ -852,18 +873,19 @@ int32_t asp_replace_surface(struct asp_scene *scene, uint64_t id, const struct a
 /// Takes a surface away; contacts on it fade. Its id is refused from then on.
 int32_t asp_remove_surface(struct asp_scene *scene, uint64_t id);
 
-/// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter "Engine".
+/// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter
+/// "Engine".
 int32_t asp_unity_slot(struct asp_renderer *renderer, uint32_t *slot);
 
 /// Version of the library: major 65536 + minor 256 + patch.
 uint32_t asp_version(void);
 
-/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`, `sizes` those of its structs in the order
-/// config, files, image, mode, body, surface, event, stats, port_config, point, force, player_config, player_report. One sentence
-/// instead of a crash where a library lies beside another one's header; structs of an older header of this interface are understood.
-int32_t asp_check_abi(uint32_t abi,
-                      const uint32_t *sizes,
-                      uint32_t count);
+/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`,
+/// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
+/// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
+/// where a library lies beside another one's header; structs of an older header of this interface
+/// are understood.
+int32_t asp_check_abi(uint32_t abi, const uint32_t *sizes, uint32_t count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,5 +1,6 @@
-//! Names the shared library for the loader, so that programs find it under its installed name, and lets it stay once it is loaded: threads of a
-//! player that nobody stopped go on in it after a plug-in's host has closed it.
+//! Names the shared library for the loader, so that programs find it under its installed name, and
+//! lets it stay once it is loaded: threads of a player that nobody stopped go on in it after a
+//! plug-in's host has closed it.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

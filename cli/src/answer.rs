@@ -1,8 +1,9 @@
 //! Answers of the servers on the loopback address: each whole, and the last of its connection.
 //!
-//! A browser keeps half a dozen connections open, and the server has a thread for each as long as it is open. Of two that come at the same moment it
-//! may leave one to a thread that is taken already; where connections stay open that one is never heard, and a page waits for a file for ever. So
-//! none stays open.
+//! A browser keeps half a dozen connections open, and the server has a thread for each as long as
+//! it is open. Of two that come at the same moment it may leave one to a thread that is taken
+//! already; where connections stay open that one is never heard, and a page waits for a file for
+//! ever. So none stays open.
 
 use std::io::{self, Write};
 use tiny_http::{Method, Request, StatusCode};

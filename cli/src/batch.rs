@@ -21,7 +21,8 @@ pub struct Options {
     /// Folder of the shards
     #[arg(short, long = "output", value_name = "DIR", required = true)]
     output: Option<PathBuf>,
-    /// Only the shards whose number mod N is I, from 0; missing: what Slurm's array task says, or all
+    /// Only the shards whose number mod N is I, from 0; missing: what Slurm's array task says, or
+    /// all
     #[arg(long, value_name = "I/N", value_parser = share)]
     shard: Option<Share>,
     /// Print one JSON object

@@ -99,7 +99,8 @@ impl Bench {
         self.blocks(1, haptic, audio)
     }
 
-    /// Measurement of some blocks in a row, of which the last stays: reading the clock takes as long as a stage of a short one.
+    /// Measurement of some blocks in a row, of which the last stays: reading the clock takes as
+    /// long as a stage of a short one.
     pub fn blocks(&mut self, count: usize, haptic: &mut [f32], audio: &mut [f32]) -> f64 {
         while self.next_event < self.renderer.position() + (count * audio.len()) as u64 {
             self.report();

@@ -31,7 +31,8 @@ impl CliError {
         Self(FileError::file(path, what, right))
     }
 
-    /// An error that another crate has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it says.
+    /// An error that another crate has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it
+    /// says.
     pub fn told(text: impl fmt::Display) -> Self {
         Self(FileError::told(text))
     }

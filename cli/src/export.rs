@@ -1,4 +1,5 @@
-//! `asperity export BODY.modes.json … -o BODIES.(gltf|glb)`: bodies with mode shapes for tools that read the draft `KHR_audio_rigid_bodies`.
+//! `asperity export BODY.modes.json … -o BODIES.(gltf|glb)`: bodies with mode shapes for tools that
+//! read the draft `KHR_audio_rigid_bodies`.
 //!
 //! | draft | ours |
 //! |---|---|
@@ -7,7 +8,8 @@
 //! | `shapes`, one mode after the other | `shapes.phi_per_sqrt_kg` |
 //! | `acousticMaterials` | what `--material` names |
 //!
-//! Numbers are single precision there. The draft knows neither loudness nor a residual: whoever reads it takes a mode's loudness from its shape.
+//! Numbers are single precision there. The draft knows neither loudness nor a residual: whoever
+//! reads it takes a mode's loudness from its shape.
 
 mod binary;
 

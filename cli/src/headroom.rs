@@ -1,8 +1,9 @@
 //! `asperity headroom`: how many fingers and modes fit on this machine.
 //!
-//! One thread unless told otherwise. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
-//! every block is timed; the kernels are timed alone in many short repetitions. Every figure is the median of its blocks or
-//! repetitions, with the range of the middle eight tenths beside it.
+//! One thread unless told otherwise. A scene is rendered in blocks of 64 frames with events at 60
+//! Hz, as a game drives it, and every block is timed; the kernels are timed alone in many short
+//! repetitions. Every figure is the median of its blocks or repetitions, with the range of the
+//! middle eight tenths beside it.
 
 mod kernels;
 mod paired;
@@ -62,7 +63,8 @@ struct SceneRow {
     name: String,
     contacts: usize,
     modes: usize,
-    /// Length of a block over the median time it takes; the slow and the quick end of the middle eight tenths.
+    /// Length of a block over the median time it takes; the slow and the quick end of the middle
+    /// eight tenths.
     real_time_factor: f64,
     real_time_factor_p10: f64,
     real_time_factor_p90: f64,
@@ -91,7 +93,8 @@ struct ContactRow {
 /// Growth of the cost of a whole scene.
 #[derive(Debug, Serialize)]
 struct GrowthRow {
-    /// Quantity that grows: `contacts`, each on a body of its own, or `modes` of one body under one finger.
+    /// Quantity that grows: `contacts`, each on a body of its own, or `modes` of one body under one
+    /// finger.
     axis: &'static str,
     count: usize,
     /// Cost of each: for modes, what they add to a finger on a silent plate.

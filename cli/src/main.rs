@@ -12,8 +12,8 @@
 //! | [`pixels`] | PNG pictures |
 //! | [`plot`] | plots as SVG |
 //!
-//! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options: &Options)
-//! -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
+//! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options:
+//! &Options) -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
@@ -55,7 +55,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, error::ErrorKind}
 use error::CliError;
 use std::process::ExitCode;
 
-/// Touch into signal: from contact events and texture maps to vibrotactile channels and modal audio.
+/// Touch into signal: from contact events and texture maps to vibrotactile channels and modal
+/// audio.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, about, disable_help_subcommand = true)]
 struct Arguments {

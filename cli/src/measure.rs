@@ -1,5 +1,6 @@
-//! Timing on machines that do other things too: many repetitions, each shorter than a time slice; their median, and the range of
-//! the middle eight tenths. A mean counts what else the machine did, a minimum what it never does twice.
+//! Timing on machines that do other things too: many repetitions, each shorter than a time slice;
+//! their median, and the range of the middle eight tenths. A mean counts what else the machine did,
+//! a minimum what it never does twice.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};

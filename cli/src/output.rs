@@ -25,7 +25,8 @@ pub fn reads<P: Into<PathBuf>>(paths: impl IntoIterator<Item = P>) {
     READ.with_borrow_mut(|read| read.extend(files));
 }
 
-/// Clears the list of files that are read: for a verb that reads what it wrote itself and writes it anew.
+/// Clears the list of files that are read: for a verb that reads what it wrote itself and writes it
+/// anew.
 pub fn clear_reads() {
     READ.with_borrow_mut(Vec::clear);
 }

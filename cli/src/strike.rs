@@ -1,4 +1,5 @@
-//! `asperity strike WHAT -o DIR`: what a thing sounds like when it is hit, without a scene and without a log.
+//! `asperity strike WHAT -o DIR`: what a thing sounds like when it is hit, without a scene and
+//! without a log.
 
 use crate::error::CliError;
 use crate::fit;
@@ -16,8 +17,9 @@ const RUNG_OUT: f64 = 9.21;
 const LEAST_TAIL_S: f64 = 0.3;
 /// Rebound over approach speed of a hand-held striker. Source: assumed.
 const RESTITUTION: f64 = 0.5;
-/// Spread of takes: speed, mass and radius of the striker as ratios (standard deviation of their logarithms), the place over
-/// the body's size. Source: assumed; drummers who repeat a stroke spread by 5 to 15 % in force.
+/// Spread of takes: speed, mass and radius of the striker as ratios (standard deviation of their
+/// logarithms), the place over the body's size. Source: assumed; drummers who repeat a stroke
+/// spread by 5 to 15 % in force.
 const SPREAD: [f64; 4] = [0.1, 0.05, 0.15, 0.02];
 /// Milliseconds of what a recording has besides modes, kept as `asperity fit --burst-ms 40` does.
 const BURST_MS: f64 = 40.0;
@@ -25,7 +27,8 @@ const BURST_MS: f64 = 40.0;
 /// Hit a thing and write what it sounds like, with the scene and the log of each sound beside it
 #[derive(Debug, Args)]
 pub struct Options {
-    /// A modes file (.json), a recording of a hit (fitted first), or a stock body: bar, bowl, can, …
+    /// A modes file (.json), a recording of a hit (fitted first), or a stock body: bar, bowl, can,
+    /// …
     #[arg(value_name = "MODES.json|RECORDING|STOCK")]
     pub what: PathBuf,
     /// Material of the body [default: for a stock body the usual one]

@@ -1,4 +1,5 @@
-//! WAV files: 32-bit float as the engine renders, or whole numbers for programs that take only those.
+//! WAV files: 32-bit float as the engine renders, or whole numbers for programs that take only
+//! those.
 
 use crate::error::CliError;
 use crate::output::Outputs;
@@ -51,7 +52,8 @@ pub fn write(
     write_bits(outputs, path, channels, sample_rate_hz, Bits::Float).map(drop)
 }
 
-/// [`write()`] in another sample format. Returns how many samples whole numbers have cut off at full scale.
+/// [`write()`] in another sample format. Returns how many samples whole numbers have cut off at
+/// full scale.
 ///
 /// # Errors
 /// As [`write()`].

@@ -1,8 +1,9 @@
 //! `asperity web [-o DIR] [--open]`: the page on which anybody strokes a texture and hears it.
 //!
-//! The page is static: any host serves what `-o` writes. `--open` serves it from the program itself, on the loopback address only, because
-//! browsers run no engine from a file. Its files are put into the program when that is built with the feature `web`, from where
-//! `bindings/web/build` has staged them.
+//! The page is static: any host serves what `-o` writes. `--open` serves it from the program
+//! itself, on the loopback address only, because browsers run no engine from a file. Its files are
+//! put into the program when that is built with the feature `web`, from where `bindings/web/build`
+//! has staged them.
 
 use crate::error::CliError;
 use clap::Args;
@@ -14,8 +15,8 @@ pub struct Options {
     /// Folder to write the page to; any static host serves it
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Serve the page on the loopback address, until the program is ended, and show it in a browser (what BROWSER names, or else the system's);
-    /// without it and without -o it is served only
+    /// Serve the page on the loopback address, until the program is ended, and show it in a browser
+    /// (what BROWSER names, or else the system's); without it and without -o it is served only
     #[arg(long)]
     pub open: bool,
     /// Port to serve on; 0 = one that is free

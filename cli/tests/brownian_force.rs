@@ -1,5 +1,5 @@
-//! The thesis' four force renderings of Brownian relief through the scene file and `--force`: the rougher
-//! the relief, the larger the force, at any sample rate.
+//! The thesis' four force renderings of Brownian relief through the scene file and `--force`: the
+//! rougher the relief, the larger the force, at any sample rate.
 
 use crate::support;
 

@@ -1,6 +1,6 @@
-//! A render repeats to the waveform where its contacts are contractive: a path moved by 1e-12 m is heard and felt the same.
-//! Where a contact bounces for good it is chaotic, another waveform of the same level; the documents list which shipped
-//! scenes are.
+//! A render repeats to the waveform where its contacts are contractive: a path moved by 1e-12 m is
+//! heard and felt the same. Where a contact bounces for good it is chaotic, another waveform of the
+//! same level; the documents list which shipped scenes are.
 
 use crate::support;
 
@@ -31,7 +31,8 @@ fn difference_db(a: &[f64], b: &[f64]) -> f64 {
     if apart == 0.0 { f64::NEG_INFINITY } else { 20.0 * (apart / level).log10() }
 }
 
-/// The log with every contact 1e-11 of a tile further along u, which of a plate of 0.1 m is a picometre.
+/// The log with every contact 1e-11 of a tile further along u, which of a plate of 0.1 m is a
+/// picometre.
 fn moved(log: &str) -> String {
     let mut moved = String::new();
     for line in log.lines() {

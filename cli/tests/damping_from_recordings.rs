@@ -1,4 +1,5 @@
-//! What `--damping-from` learns from a recording, judged on the half of its modes that it was not shown.
+//! What `--damping-from` learns from a recording, judged on the half of its modes that it was not
+//! shown.
 
 use asperity::Material;
 use asperity_dsp::mode::Mode;
@@ -45,7 +46,8 @@ fn recorded(name: &str) -> Option<Vec<Mode>> {
     Some(found)
 }
 
-/// Decays told by the law of the other half, over those recorded: each half holds back the other once.
+/// Decays told by the law of the other half, over those recorded: each half holds back the other
+/// once.
 fn held_back(modes: &[Mode]) -> Vec<f64> {
     let half = |which: usize| -> Vec<Mode> { modes.iter().skip(which).step_by(2).copied().collect() };
     let told = |from: &[Mode], of: &[Mode]| -> Vec<f64> {

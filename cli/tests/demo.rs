@@ -106,7 +106,8 @@ fn headroom_reports_every_promised_row() {
     let contact = rows("contact");
     let integrators: Vec<&str> = contact.iter().map(|row| row["integrator"].as_str().unwrap()).collect();
     assert_eq!(integrators, ["semi-implicit-euler", "exact-event", "energy-conserving"]);
-    // The whole chain of one contact beside the kernels that it is made of: the rest is glue, and it may not grow.
+    // The whole chain of one contact beside the kernels that it is made of: the rest is glue, and
+    // it may not grow.
     let kernels = &report["kernels"];
     assert_eq!(kernels["rows"].as_array().unwrap().len(), 6);
     let times = kernels["chain_over_kernels"].as_f64().unwrap();

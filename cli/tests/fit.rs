@@ -1,5 +1,5 @@
-//! `asperity fit` from outside: what it writes, the round trip through the engine, tables, several strikes,
-//! and inputs that are no good recording of one strike.
+//! `asperity fit` from outside: what it writes, the round trip through the engine, tables, several
+//! strikes, and inputs that are no good recording of one strike.
 
 use crate::support;
 
@@ -163,7 +163,8 @@ fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
     fit(folder, &["take.audio.wav", "-o", "again.modes.json"]);
     let (first, again) = (modes(folder, "tile.modes.json"), modes(folder, "again.modes.json"));
     assert!(first.len() >= 10, "{}", first.len());
-    // What the tile rings with: modes that last, down to 36 dB under the strongest. The others are its strike.
+    // What the tile rings with: modes that last, down to 36 dB under the strongest. The others are
+    // its strike.
     let energy = |[_, decay, amplitude]: &[f64; 3]| amplitude * amplitude / decay;
     let ringing = || first.iter().filter(|mode| mode[1] < 100.0);
     let strongest = ringing().map(energy).fold(0.0, f64::max);
@@ -173,7 +174,8 @@ fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
         let found = nearest(&again, hz);
         assert!((found[0] / hz - 1.0).abs() < 1e-5, "{hz} Hz came back as {}", found[0]);
         assert!((found[1] / decay - 1.0).abs() < 0.01, "{hz} Hz: {decay}/s came back as {}", found[1]);
-        // One mode each: they crowded at 750 to 791 Hz and traded places. What the room adds lies 40 dB below.
+        // One mode each: they crowded at 750 to 791 Hz and traded places. What the room adds lies
+        // 40 dB below.
         let near = body.iter().filter(|other| (other[0] / hz - 1.0).abs() < 0.01);
         assert_eq!(near.count(), 1, "{hz} Hz of {first:?}");
     }
@@ -232,7 +234,8 @@ fn plate_hz(mode: usize) -> f64 {
     210.0 * (a * a + 1.7 * b * b)
 }
 
-/// A modes file of version 2 with these shapes, computed `stiffer` times as high; `shape` says whose each mode has.
+/// A modes file of version 2 with these shapes, computed `stiffer` times as high; `shape` says
+/// whose each mode has.
 fn plate_file(path: &Path, stiffer: f64, shape: impl Fn(usize) -> usize) {
     let [columns, rows] = [21, 16];
     let point = |n: usize| [n % columns, n / columns];

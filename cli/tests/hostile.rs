@@ -1,5 +1,5 @@
-//! Inputs that are wrong, damaged, absurd or too many: one `error:` line, or a finite render that counts
-//! what it left out. Never a panic, never a sample that is not finite.
+//! Inputs that are wrong, damaged, absurd or too many: one `error:` line, or a finite render that
+//! counts what it left out. Never a panic, never a sample that is not finite.
 
 use crate::support;
 

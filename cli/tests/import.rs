@@ -150,7 +150,8 @@ fn every_sample_scene_of_the_draft_is_read_and_five_render() {
         assert_eq!((status, err.as_str()), (0, ""), "{path}");
         if index % (found.len() / 5) == 0 {
             let report = import_and_render(folder.path(), path);
-            // Small bodies of the samples ring above what is heard; their surfaces are felt all the same.
+            // Small bodies of the samples ring above what is heard; their surfaces are felt all the
+            // same.
             let peak = |value: &Value| value.as_f64().unwrap();
             assert!(
                 peak(&report["audio_peak"]) > 0.0 || peak(&report["haptic_peak"][0]) > 0.0,
@@ -222,7 +223,8 @@ fn a_document_without_the_draft_gives_a_body_and_a_surface_in_true_metres() {
             toml::from_str(&fs::read_to_string(folder.path().join("out/scene.toml")).unwrap()).unwrap();
         let surface = &scene["surface"][0];
         let number = |key: &str| surface[key].as_float().unwrap();
-        // One repeat spans 25 mm on the faces that have coordinates; slopes of 0.3 over 4 periods of it.
+        // One repeat spans 25 mm on the faces that have coordinates; slopes of 0.3 over 4 periods
+        // of it.
         let width_m = 0.025 * factor / repeats;
         assert!((number("width_m") / width_m - 1.0).abs() < 0.01, "{}", number("width_m"));
         let relief_m = 2.0 * 0.3 * (width_m / 4.0) / std::f64::consts::TAU;

@@ -1,4 +1,5 @@
-//! One list of what is accepted: the reader of scene files, the engine and the documents say the same.
+//! One list of what is accepted: the reader of scene files, the engine and the documents say the
+//! same.
 
 use crate::support;
 

@@ -1,4 +1,5 @@
-//! The program's black-box tests in one program, but for the one that is empty where the page is in.
+//! The program's black-box tests in one program, but for the one that is empty where the page is
+//! in.
 
 mod actuators;
 mod brownian_force;

@@ -1,4 +1,5 @@
-//! `asperity modes` from the outside: a mesh file in, a modes file of version 2 out, and one line for what is refused.
+//! `asperity modes` from the outside: a mesh file in, a modes file of version 2 out, and one line
+//! for what is refused.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -38,7 +39,8 @@ fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
     let (shapes, unit) = asperity::load_shapes(at.join("bar.modes.json")).unwrap().unwrap();
     assert_eq!(unit, asperity::ShapeUnit::Relative);
     // The first bending mode of a free bar: its shape at the ends is 2/√m out of its plane, less
-    // what turning of its sections takes of the energy (t/L = 0.1: about 4 %), and Timoshenko's frequency is a little below Euler–Bernoulli's 1.028 (t/L²) √(E/ρ).
+    // what turning of its sections takes of the energy (t/L = 0.1: about 4 %), and Timoshenko's
+    // frequency is a little below Euler–Bernoulli's 1.028 (t/L²) √(E/ρ).
     let steel = asperity::Material::STEEL;
     let euler_hz = 1.028 * 0.01 / 0.01 * (steel.young_pa / steel.density_kg_m3).sqrt();
     let ratio = model.modes[0].frequency_hz / euler_hz;
@@ -122,7 +124,8 @@ fn with_radiation_levels_are_pascals_and_low_bending_modes_are_far_below_a_breat
     let (dry_shapes, air_shapes) = (dry.shapes.unwrap(), air.shapes.unwrap());
     for m in 0..6 {
         assert!(air.modes[m].decay_per_s >= dry.modes[m].decay_per_s);
-        // A surface that moved as one with the mode's rms velocity at full efficiency: ρ c √(S / 4π), S = 6.4e-3 m² here.
+        // A surface that moved as one with the mode's rms velocity at full efficiency: ρ c √(S /
+        // 4π), S = 6.4e-3 m² here.
         let most = 1.2 * 343.0 * (6.4e-3_f64 / (4.0 * std::f64::consts::PI)).sqrt() * dry_shapes.gains[m];
         assert!(
             air_shapes.gains[m] > 0.0 && air_shapes.gains[m] < 1.5 * most,

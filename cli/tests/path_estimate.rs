@@ -1,5 +1,6 @@
-//! The path modes against the best linear causal estimator there can be, at the same lag: on reaches of a hand, and on strokes of the
-//! corpus where it is at hand. In each of four kinds of report: velocity reported or not, places exact or with 50 µm of noise.
+//! The path modes against the best linear causal estimator there can be, at the same lag: on
+//! reaches of a hand, and on strokes of the corpus where it is at hand. In each of four kinds of
+//! report: velocity reported or not, places exact or with 50 µm of noise.
 
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{PathEvent, PathMode, PathPoint, Trajectory, TrajectoryDesign};
@@ -196,7 +197,8 @@ fn least_squares(rows: &[(Vec<f64>, f64)]) -> Vec<f64> {
     x
 }
 
-/// Velocity error of the best linear estimator, trained on one half of a stroke and tried on the other, dB.
+/// Velocity error of the best linear estimator, trained on one half of a stroke and tried on the
+/// other, dB.
 fn of_the_best(stroke: &Stroke, reports: &[Report], reported: bool) -> f64 {
     let late = (0.0075 * RATE_HZ) as usize;
     let (mut wrong, mut all) = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! Order of modes by a masking model, on named tables of measured modes: how many nobody would miss, and what the ear's excitation says.
+//! Order of modes by a masking model, on named tables of measured modes: how many nobody would
+//! miss, and what the ear's excitation says.
 
 use asperity::{Config, ContactEvent, Impact, Material, ModalModel};
 use asperity_dsp::masking::{
@@ -34,7 +35,8 @@ fn table(name: &str) -> Option<Vec<Mode>> {
     Some((0..hz.len()).map(mode).collect())
 }
 
-/// Excitation of some modes in an ERB band during a frame of 20 ms, with the threshold in quiet, as a power.
+/// Excitation of some modes in an ERB band during a frame of 20 ms, with the threshold in quiet, as
+/// a power.
 fn excitation(modes: &[Mode], which: &[usize], erb: f64, time_s: f64) -> f64 {
     let loudest = modes.iter().fold(0.0f64, |most, mode| most.max(mode.amplitude));
     let hz = (10f64.powf(erb / 21.4) - 1.0) / 0.00437;
@@ -92,7 +94,8 @@ fn the_order_does_not_depend_on_how_the_modes_were_sorted() {
     assert_eq!(one, other);
 }
 
-/// What the engine makes of a strike whose loudest mode is at [`LOUDEST_DB_SPL`], a second of it, where the governor is at a level.
+/// What the engine makes of a strike whose loudest mode is at [`LOUDEST_DB_SPL`], a second of it,
+/// where the governor is at a level.
 fn struck(modes: &[Mode], level: usize) -> Vec<f32> {
     const IMPULSE_N_S: f64 = 1e-2;
     let config = Config { culling: None, ..Config::default() };
@@ -140,7 +143,8 @@ fn bands(frame: &[f32]) -> Vec<f64> {
     bands
 }
 
-/// Excitation in each ERB from 4 to 39 of what is heard in bands, with the threshold in quiet, as a power.
+/// Excitation in each ERB from 4 to 39 of what is heard in bands, with the threshold in quiet, as a
+/// power.
 fn excited(bands: &[f64], loudest: f64) -> Vec<f64> {
     let at = |erb: f64| {
         let hz = (10f64.powf(erb / 21.4) - 1.0) / 0.00437;
@@ -153,8 +157,8 @@ fn excited(bands: &[f64], loudest: f64) -> Vec<f64> {
     (4..40).map(|erb| at(f64::from(erb))).collect()
 }
 
-/// The bands of every 20 ms of a strike at a level, in the mean over strikes whose modes begin at other phases: two tones within an ERB beat, and
-/// of a beat it is chance which frame it falls in.
+/// The bands of every 20 ms of a strike at a level, in the mean over strikes whose modes begin at
+/// other phases: two tones within an ERB beat, and of a beat it is chance which frame it falls in.
 fn heard_at(modes: &[Mode], level: usize) -> Vec<Vec<f64>> {
     const STRIKES: usize = 8;
     let mut rng = asperity_dsp::rng::Rng::new(17);

@@ -1,5 +1,5 @@
-//! What the texture verbs say to pictures that are none, damaged or absurd, and to options that make no sense: one line that names the
-//! file or the option, and nothing left behind.
+//! What the texture verbs say to pictures that are none, damaged or absurd, and to options that
+//! make no sense: one line that names the file or the option, and nothing left behind.
 
 use crate::maps;
 use crate::support;
@@ -79,7 +79,8 @@ fn a_blank_reference_and_a_blank_normal_map_are_told_to_be_flat() {
     }
 }
 
-/// A map whose x lies in alpha was called a photograph, or lacked the word where its ribs lie along u.
+/// A map whose x lies in alpha was called a photograph, or lacked the word where its ribs lie along
+/// u.
 #[test]
 fn a_normal_map_with_x_in_alpha_is_told_from_a_photograph() {
     let scene = with_maps(&[]);

@@ -1,4 +1,5 @@
-//! `asperity report` from outside: its tables, its scenes, and its errors against an integration that shares no code with the engine.
+//! `asperity report` from outside: its tables, its scenes, and its errors against an integration
+//! that shares no code with the engine.
 
 use crate::support;
 
@@ -132,8 +133,9 @@ impl Trace {
     }
 }
 
-/// Pad displacement and mean contact force of each fine step (the mean belongs to the step that ends there), by the classical
-/// Runge–Kutta scheme in four steps each, from what the probe does at a sample: how a contact is led in is not asked here.
+/// Pad displacement and mean contact force of each fine step (the mean belongs to the step that
+/// ends there), by the classical Runge–Kutta scheme in four steps each, from what the probe does at
+/// a sample: how a contact is led in is not asked here.
 fn integrated(trace: &Trace, from: usize, force_n: f64) -> (Vec<f64>, Vec<f64>) {
     const STEPS: usize = 4;
     let fine_hz = RATE_HZ * FINE as f64;
@@ -215,7 +217,8 @@ fn unseen(case: &str, seed: u64) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Whether a stroke whose path is moved by a picometre moves the pad, and presses on it, as it did, within −80 dB.
+/// Whether a stroke whose path is moved by a picometre moves the pad, and presses on it, as it did,
+/// within −80 dB.
 fn forgets(case: &str, seed: u64) -> bool {
     let (_keep, folder) = unseen(case, seed);
     let (scene, log, seed) = (format!("{case}.toml"), folder.join(format!("{case}.jsonl")), seed.to_string());
@@ -306,8 +309,9 @@ fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
     }
     let error_db = |which: usize| number(&presets[which]["error_db"]);
     assert!(error_db(2) < error_db(1) && error_db(1) < error_db(0) - 15.0);
-    // What each is felt and heard as where the contact forgets how it came to where it is. In `fast` the ground is looked at midway between samples, in
-    // `light` at the quarters too. `rough` hardly forgets: of other seeds it does not.
+    // What each is felt and heard as where the contact forgets how it came to where it is. In
+    // `fast` the ground is looked at midway between samples, in `light` at the quarters too.
+    // `rough` hardly forgets: of other seeds it does not.
     let most = [
         ("default", "smooth", -85.0, -68.0),
         ("default", "bouncing", -72.0, -60.0),

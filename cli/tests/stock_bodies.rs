@@ -30,7 +30,8 @@ impl Mesh {
         })
     }
 
-    /// Six tetrahedra of a cell of a grid whose corners lie where `place` says; none of those that have no volume.
+    /// Six tetrahedra of a cell of a grid whose corners lie where `place` says; none of those that
+    /// have no volume.
     fn cell(&mut self, cell: [usize; 3], place: &dyn Fn([usize; 3]) -> Point) {
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let mut at = cell;

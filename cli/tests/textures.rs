@@ -1,4 +1,5 @@
-//! The texture verbs from outside: what they print and write, and that their results go on into a render.
+//! The texture verbs from outside: what they print and write, and that their results go on into a
+//! render.
 
 use crate::maps;
 use crate::support;
@@ -31,7 +32,8 @@ fn grey(scene: &Scene, name: &str) -> Raster {
     load_channel(scene.path(name), Channel::Luma).unwrap().raster
 }
 
-/// An OpenGL or DirectX normal map of heights that tile, with true derivatives taken by central differences of a fine sine.
+/// An OpenGL or DirectX normal map of heights that tile, with true derivatives taken by central
+/// differences of a fine sine.
 fn save_normal_map(path: &Path, slope: impl Fn(f64, f64) -> [f64; 2], green_up: bool, size: u32) {
     let picture = image::RgbImage::from_fn(size, size, |x, y| {
         let [p, q] = slope(f64::from(x), f64::from(y));
@@ -101,7 +103,8 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
         }
         let limit = file.values.iter().filter(|grey| **grey <= 0.0 || **grey >= 1.0).count();
         let stretched = (offset, scale) != (0.0, 1.0);
-        // Where heights leave the reference's range the file is stretched and says so: next to nothing is at its limits.
+        // Where heights leave the reference's range the file is stretched and says so: next to
+        // nothing is at its limits.
         assert_eq!(stretched, more.contains(&"--method"), "{more:?}");
         assert!(!stretched || limit < 100, "{more:?}: {limit} of the texels at the limits");
         let warned = made["warnings"].to_string();
@@ -116,7 +119,8 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
             warned.contains("arrangement is left"),
             "{more:?}: {kept} {warned}"
         );
-        // What has the feel of a grid and keeps nothing of the look is the grid itself, where it was or somewhere else.
+        // What has the feel of a grid and keeps nothing of the look is the grid itself, where it
+        // was or somewhere else.
         let is_told = taken > 0.5 && taken > kept;
         assert!(!more.is_empty() || (kept < 0.3 && is_told), "{kept} {taken} {made}");
     }
@@ -124,7 +128,8 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
     assert_eq!((low, high), (0.0, 1.0));
 }
 
-/// Volume (mm³) and extents (mm) of a binary STL, and whether every edge is met once in either direction.
+/// Volume (mm³) and extents (mm) of a binary STL, and whether every edge is met once in either
+/// direction.
 fn solid(bytes: &[u8]) -> (f64, [f64; 3], bool) {
     let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;

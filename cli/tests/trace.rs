@@ -1,5 +1,5 @@
-//! The heights in a trace of every source of a scene file are those of the source's own definition, to
-//! a nanometre: point evaluation in the library, a spline solved here, and Python.
+//! The heights in a trace of every source of a scene file are those of the source's own definition,
+//! to a nanometre: point evaluation in the library, a spline solved here, and Python.
 
 use crate::support;
 

@@ -1,4 +1,5 @@
-//! The verb of the page, in a program that was built without it. `bindings/web/test` tests one that carries it.
+//! The verb of the page, in a program that was built without it. `bindings/web/test` tests one that
+//! carries it.
 
 #![cfg(not(feature = "web"))]
 

@@ -1,4 +1,5 @@
-//! Cost of one impact: pulse from the speed, and its deposit into the ring. Bar: 50 ns up to 9 samples of contact.
+//! Cost of one impact: pulse from the speed, and its deposit into the ring. Bar: 50 ns up to 9
+//! samples of contact.
 
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,5 +1,5 @@
-//! Mode-samples a second of every instruction set at hand, force in every sample; and what silence costs.
-//! The comparison with C in one run is `examples/modal_speed.rs`.
+//! Mode-samples a second of every instruction set at hand, force in every sample; and what silence
+//! costs. The comparison with C in one run is `examples/modal_speed.rs`.
 
 use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, design_groups};
 use asperity_dsp::mode::Mode;

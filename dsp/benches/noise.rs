@@ -1,5 +1,5 @@
-//! Micro-relief with all 12 octaves alive (0.09 m/s at 44.1 kHz), by instruction set: ns per sample is
-//! the printed time of one element.
+//! Micro-relief with all 12 octaves alive (0.09 m/s at 44.1 kHz), by instruction set: ns per sample
+//! is the printed time of one element.
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::simd::Level;

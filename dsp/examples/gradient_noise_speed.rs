@@ -1,5 +1,5 @@
-//! Prints nanoseconds per sample of value and gradient, one octave, for every kernel: points anywhere, and
-//! the samples of a finger at 100 mm/s on sandpaper (cells of 0.2 mm).
+//! Prints nanoseconds per sample of value and gradient, one octave, for every kernel: points
+//! anywhere, and the samples of a finger at 100 mm/s on sandpaper (cells of 0.2 mm).
 
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
 use asperity_dsp::simd::Level;

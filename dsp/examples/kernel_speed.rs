@@ -1,10 +1,10 @@
-//! Prints what the kernels of one contact cost: every integrator on a smooth and on a rough profile, the
-//! micro-relief on every instruction set, and a Hertz impact.
+//! Prints what the kernels of one contact cost: every integrator on a smooth and on a rough
+//! profile, the micro-relief on every instruction set, and a Hertz impact.
 //!
 //! `cargo run --release -p asperity-dsp --example kernel_speed`
 //!
-//! Each figure is the best and, behind it, the median of many segments well below a millisecond, which other work on
-//! the machine disturbs less than a mean. The modal bank has `modal_speed`.
+//! Each figure is the best and, behind it, the median of many segments well below a millisecond,
+//! which other work on the machine disturbs less than a mean. The modal bank has `modal_speed`.
 
 #[path = "../tests/profiles/mod.rs"]
 mod profiles;

@@ -1,10 +1,11 @@
-//! Prints how many mode-samples a nanosecond the bank renders, force in every sample, beside the loop a C
-//! programmer writes (`benches/peers/fast_math.c`, `gcc -O3 -march=native -ffast-math`), in one run.
+//! Prints how many mode-samples a nanosecond the bank renders, force in every sample, beside the
+//! loop a C programmer writes (`benches/peers/fast_math.c`, `gcc -O3 -march=native -ffast-math`),
+//! in one run.
 //!
 //! `cargo run --release -p asperity-dsp --example modal_speed [ROUNDS [MODES …]]`
 //!
-//! Rounds of all contenders alternate; each figure is the best and, behind it, the median of many segments of
-//! about 1 ms, so that other work on the machine hurts neither side alone.
+//! Rounds of all contenders alternate; each figure is the best and, behind it, the median of many
+//! segments of about 1 ms, so that other work on the machine hurts neither side alone.
 
 use asperity_dsp::modal_bank::{
     GroupOptions, GroupState, Input, Inputs, ModalBank, ModeGroup, design_groups, lane_gains,

@@ -1,8 +1,10 @@
-//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two inputs: fading out, fading in), friction that rubs
-//! one way (the same law, deaf to how the body moves), a rub that is coupled with the body in every sample, and one that slides as well.
+//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two
+//! inputs: fading out, fading in), friction that rubs one way (the same law, deaf to how the body
+//! moves), a rub that is coupled with the body in every sample, and one that slides as well.
 //!
-//! Without arguments processor times, the best of many runs, as ratios. With `KIND MODES` a second of that kind alone, for an instruction
-//! counter: `valgrind --tool=callgrind target/release/examples/sliding_cost rub 100`; the kind `nothing` is what has to be taken off.
+//! Without arguments processor times, the best of many runs, as ratios. With `KIND MODES` a second
+//! of that kind alone, for an instruction counter: `valgrind --tool=callgrind
+//! target/release/examples/sliding_cost rub 100`; the kind `nothing` is what has to be taken off.
 
 use asperity_dsp::hertz::{FORCE_HISTORY, FORCE_TAPS};
 use asperity_dsp::modal_bank::{

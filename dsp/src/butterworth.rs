@@ -37,8 +37,8 @@ pub struct Butterworth {
     pub(crate) a1: f64,
     pub(crate) a2: f64,
     pub(crate) a3: f64,
-    /// What moves the state: 2 a₁ − 1, 2 a₂, 2 a₃. Written so, a sample waits for its predecessor half
-    /// as long as when the state is mirrored about the output.
+    /// Coefficients that move the state: 2 a₁ − 1, 2 a₂, 2 a₃. Written so, a sample waits for its
+    /// predecessor half as long as when the state is mirrored about the output.
     pub(crate) band_to_band: f64,
     pub(crate) cross: f64,
     pub(crate) input_to_low: f64,
@@ -108,16 +108,17 @@ impl State {
         Self { band: 0.0, low: value }
     }
 
-    /// The state of a filter that has followed a straight line for ever, the line being at `value` at
-    /// the first sample: the low-pass gives the line, one group delay late, from that sample on.
+    /// The state of a filter that has followed a straight line for ever, the line being at `value`
+    /// at the first sample: the low-pass gives the line, one group delay late, from that sample on.
     pub fn settled_on_ramp(filter: &Butterworth, value: f64, rise_per_sample: f64) -> Self {
         let g = filter.a2 / filter.a1;
         let band = rise_per_sample / (2.0 * g);
         Self { band, low: value - band * (g + SQRT_2) }
     }
 
-    /// The state of a filter whose input is at `value`, has risen by `slope_per_s` and bent by `bend_per_s2` for
-    /// ever: the high-pass then gives the bend over ω² and nothing else. For cutoffs far below the rate.
+    /// The state of a filter whose input is at `value`, has risen by `slope_per_s` and bent by
+    /// `bend_per_s2` for ever: the high-pass then gives the bend over ω² and nothing else. For
+    /// cutoffs far below the rate.
     #[must_use]
     pub fn settled_on_trend(filter: &Butterworth, value: f64, slope_per_s: f64, bend_per_s2: f64) -> Self {
         let w = filter.angular_cutoff_per_s;
@@ -149,7 +150,8 @@ impl State {
     }
 }
 
-/// Two filters that run side by side, each as [`Butterworth`] does: alone a filter waits for itself most of the time.
+/// Two filters that run side by side, each as [`Butterworth`] does: alone a filter waits for itself
+/// most of the time.
 #[derive(Debug, Clone, Copy)]
 pub struct Two {
     a1: Pair,
@@ -191,7 +193,7 @@ impl Two {
         }
     }
 
-    /// Where they stand.
+    /// States of the two.
     #[inline]
     pub fn states(&self) -> [State; 2] {
         let ([band_a, band_b], [low_a, low_b]): ([f64; 2], [f64; 2]) = (self.band.into(), self.low.into());

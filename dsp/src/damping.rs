@@ -9,8 +9,9 @@
 //! | η | `eta` | the same share a cycle: the loss factor that handbooks measure |
 //! | β | `beta_s` | a share a cycle that grows with frequency: viscosity |
 //!
-//! Source: α and β are Rayleigh's proportional damping; η, its structural (hysteretic) counterpart, is ours beside them: over 52 fitted modes of a
-//! ceramic bowl a loss factor alone is within a factor of 2 of 83 % of them, the best Rayleigh pair of 63 %.
+//! Source: α and β are Rayleigh's proportional damping; η, its structural (hysteretic) counterpart,
+//! is ours beside them: over 52 fitted modes of a ceramic bowl a loss factor alone is within a
+//! factor of 2 of 83 % of them, the best Rayleigh pair of 63 %.
 
 use crate::limits::material as limits;
 use crate::{DesignError, limits::Range};
@@ -89,7 +90,8 @@ mod tests {
 
     #[test]
     fn the_decay_is_that_of_a_spring_with_a_complex_stiffness() {
-        // numpy: imaginary part of sqrt(k (1 + i eta) / m) for k / m = (2 pi 1000)^2: 31.41553 (eta 0.01), 62.82871 (eta 0.02).
+        // numpy: imaginary part of sqrt(k (1 + i eta) / m) for k / m = (2 pi 1000)^2: 31.41553 (eta
+        // 0.01), 62.82871 (eta 0.02).
         for (eta, decay_per_s) in [(0.01, 31.415_53), (0.02, 62.828_71)] {
             let d = Damping { alpha_per_s: 0.0, eta, beta_s: 0.0 }.decay_per_s(1000.0);
             assert!((d / decay_per_s - 1.0).abs() < 1e-3, "{d}");

@@ -9,7 +9,7 @@ pub struct DesignError {
     pub field: &'static str,
     /// The value that was refused.
     pub value: f64,
-    /// What would be accepted, as the end of the sentence "must be …".
+    /// Accepted values, as the end of the sentence "must be …".
     pub expected: &'static str,
 }
 

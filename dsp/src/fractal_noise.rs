@@ -19,21 +19,23 @@
 //! feels the same, out and back, and the temporal amplitude follows v^((α−1)/2) by itself (measured
 //! level at 4 × speed: within 0.1 dB of 6.02 (α − 1)).
 //!
-//! *Footprint.* An octave whose cell is crossed in c samples fades out from c = 4 to c = 2, so nothing
-//! aliases (≤ −40 dB), and octaves that have faded out are not computed.
-//! *Tail.* A gradient-noise octave has a white tail below its peak. Where the octaves end, the tails of
-//! the missing finer ones are missing too: at α = 1 the spectrum tilts by 0.11–0.26 dB per octave.
-//! Boosting the finest living octave by a fitted 0.8–2.8 dB puts the tail back: computed level within
-//! 0.06 dB of the law over 2.5 decades (fit: `tests/independent/noise_spectrum.py`).
-//! *Own band of the source.* Octaves whose wavelength is above `longest_wavelength_m` fade out within
+//! *Footprint.* An octave whose cell is crossed in c samples fades out from c = 4 to c = 2, so
+//! nothing aliases (≤ −40 dB), and octaves that have faded out are not computed. *Tail.* A
+//! gradient-noise octave has a white tail below its peak. Where the octaves end, the tails of the
+//! missing finer ones are missing too: at α = 1 the spectrum tilts by 0.11–0.26 dB per octave.
+//! Boosting the finest living octave by a fitted 0.8–2.8 dB puts the tail back: computed level
+//! within 0.06 dB of the law over 2.5 decades (fit: `tests/independent/noise_spectrum.py`). *Own
+//! band of the source.* Octaves whose wavelength is above `longest_wavelength_m` fade out within
 //! one octave, so that no scale is rough twice.
 //!
-//! Everything a sample needs is its own position, footprint and roughness, and every instruction set
-//! performs the same operations in the same order: the bits depend neither on blocks nor on the machine.
+//! Everything a sample needs is its own position, footprint and roughness, and every instruction
+//! set performs the same operations in the same order: the bits depend neither on blocks nor on the
+//! machine.
 //!
-//! *Speed.* The eight or sixteen samples side by side (sixteen where a register holds eight or more, so that what is the same in all of
-//! them is spread over the lanes once for two registers) are mostly in one cell of a slow octave. Its four gradients are hashed once and
-//! kept until a sample leaves the cell, which one comparison of the samples' bounds tells. This changes no bit.
+//! *Speed.* The eight or sixteen samples side by side (sixteen where a register holds eight or
+//! more, so that what is the same in all of them is spread over the lanes once for two registers)
+//! are mostly in one cell of a slow octave. Its four gradients are hashed once and kept until a
+//! sample leaves the cell, which one comparison of the samples' bounds tells. This changes no bit.
 
 mod cells;
 mod gains;
@@ -63,7 +65,7 @@ const ROTATIONS: usize = 3;
 const ROTATION_RAD: [f64; ROTATIONS] =
     [0.130_899_693_899_574_7, 0.654_498_469_497_873_6, 1.178_097_245_096_172_4];
 
-/// Where a contact is, sample by sample. Both slices are equally long.
+/// Places of a contact, sample by sample. Both slices are equally long.
 #[derive(Debug, Clone, Copy)]
 pub struct NoisePath<'a> {
     /// Position on the surface, metres, not wrapped. Beyond ±10⁷ m (and for a NaN) it is that edge.
@@ -72,7 +74,8 @@ pub struct NoisePath<'a> {
     pub footprint_m: &'a [f64],
 }
 
-/// The cells of the slow octaves that a path was last in: a short block need not look for them again.
+/// The cells of the slow octaves that a path was last in: a short block need not look for them
+/// again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseCells {
     /// Keys of the field that they are of.
@@ -127,7 +130,7 @@ impl FractalNoise {
         Self { octaves, rotations: lanes::rotations(), level: Level::detect() }
     }
 
-    /// The same field on a chosen instruction set. All give the same bits.
+    /// Field on a chosen instruction set. All give equal bits.
     #[must_use]
     pub fn on(self, level: Level) -> Self {
         Self { level, ..self }
@@ -145,8 +148,8 @@ impl FractalNoise {
         2.5 - 1.5 * roughness.clamp(0.0, 1.0)
     }
 
-    /// Adds the relief along a path to `height_m`. `roughness` (0–1, clamped) and `height_m` are as long
-    /// as the path; `weights` say how strong each octave is at each roughness.
+    /// Adds the relief along a path to `height_m`. `roughness` (0–1, clamped) and `height_m` are as
+    /// long as the path; `weights` say how strong each octave is at each roughness.
     pub fn add(
         &self,
         path: &NoisePath<'_>,
@@ -157,8 +160,9 @@ impl FractalNoise {
         self.add_each(path, roughness, &[weights], &mut [height_m], &mut NoiseCells::default());
     }
 
-    /// [`Self::add`] along one path for several sets of weights at once, each with heights of its own: the octaves are worked out once, the
-    /// bits are the same. `cells` are those that the path before was in, best of the same contact; they save time and change no bit.
+    /// [`Self::add`] along one path for several sets of weights at once, each with heights of its
+    /// own: the octaves are worked out once, the bits are the same. `cells` are those that the path
+    /// before was in, best of the same contact; they save time and change no bit.
     pub fn add_each<const W: usize>(
         &self,
         path: &NoisePath<'_>,

@@ -10,15 +10,17 @@
 //! | x, y | fixed point, 32 bits of fraction and 32 of cell index, wrapping |
 //! | g | a diagonal (±1, ±1) from two bits of the corner's hash |
 //!
-//! Source: K. Perlin, "Improving Noise", SIGGRAPH 2002 (quintic fade). What we changed: gradients are
-//! the four diagonals, picked by flipping sign bits. The power spectrum depends on their covariance
-//! alone, which is that of uniform directions of length √2, so nothing is lost but a multiplication.
+//! Source: K. Perlin, "Improving Noise", SIGGRAPH 2002 (quintic fade). What we changed: gradients
+//! are the four diagonals, picked by flipping sign bits. The power spectrum depends on their
+//! covariance alone, which is that of uniform directions of length √2, so nothing is lost but a
+//! multiplication.
 //!
-//! Coordinates are fixed point because it is exact: octaves are shifts of one number, the cell and the
-//! place in it never disagree, and there is no far-away where precision runs out. Everything else is
-//! `f32` additions and multiplications in one written order, never fused, so that every instruction
-//! set gives the same bits. The variance is [`VARIANCE`] and the spectrum peaks at
-//! [`PEAK_WAVELENGTH_CELLS`] (both computed from the equation, `tests/independent/noise_spectrum.py`).
+//! Coordinates are fixed point because it is exact: octaves are shifts of one number, the cell and
+//! the place in it never disagree, and there is no far-away where precision runs out. Everything
+//! else is `f32` additions and multiplications in one written order, never fused, so that every
+//! instruction set gives the same bits. The variance is [`VARIANCE`] and the spectrum peaks at
+//! [`PEAK_WAVELENGTH_CELLS`] (both computed from the equation,
+//! `tests/independent/noise_spectrum.py`).
 
 use crate::simd::Vector;
 
@@ -44,8 +46,8 @@ type Gradient<W> = [W; 2];
 /// The gradients at the four corners of a cell: upper left, upper right, lower left, lower right.
 pub(crate) type Cell = [[u32; 2]; 4];
 
-/// The noise at N places in cells of N columns and rows; `key` tells lattices apart. Places are measured from the centre of the cell, in
-/// 2⁻³² cells, signed.
+/// The noise at N places in cells of N columns and rows; `key` tells lattices apart. Places are
+/// measured from the centre of the cell, in 2⁻³² cells, signed.
 #[inline(always)]
 pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
     v: V,
@@ -66,7 +68,7 @@ pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
     place.between(v, [a, b, c, d])
 }
 
-/// The same where all places are in one cell.
+/// Noise where all places are in one cell.
 #[inline(always)]
 pub(crate) fn gradient_noise_in<const N: usize, V: Vector<N>>(
     v: V,
@@ -121,7 +123,7 @@ impl<F: Copy> Place<F> {
         }
     }
 
-    /// What the corners say, faded into each other.
+    /// Values of the corners, faded into each other.
     #[inline(always)]
     fn between<const N: usize, V: Vector<N, Single = F>>(&self, v: V, [a, b, c, d]: [F; 4]) -> F {
         let (fx, fy) = (centred_fade(v, self.x), centred_fade(v, self.y));
@@ -129,8 +131,8 @@ impl<F: Copy> Place<F> {
     }
 }
 
-/// The gradient of a corner from what its column and its row contribute: the top bits of two products
-/// of their hash.
+/// The gradient of a corner from what its column and its row contribute: the top bits of two
+/// products of their hash.
 #[inline(always)]
 fn gradient<const N: usize, V: Vector<N>>(v: V, column: V::Word, row: V::Word) -> Gradient<V::Word> {
     let h = v.xor(column, row);

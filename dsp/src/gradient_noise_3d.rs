@@ -13,15 +13,16 @@
 //!
 //! Source: the solid-noise paper takes its noise from libnoise, which is K. Perlin's of 1985; the
 //! twelve gradients and the quintic blend are those of K. Perlin, "Improving Noise" (2002), because
-//! the cubic blend's jump of curvature at cell borders is felt as a click per cell. What we changed:
-//! lattice hashing needs no table (three odd multipliers, exclusive or, one mixing multiplication),
-//! so that a batch runs in vector registers; the gradient is delivered with the value.
+//! the cubic blend's jump of curvature at cell borders is felt as a click per cell. What we
+//! changed: lattice hashing needs no table (three odd multipliers, exclusive or, one mixing
+//! multiplication), so that a batch runs in vector registers; the gradient is delivered with the
+//! value.
 //!
-//! Properties, all tested: exactly zero at lattice points; range ±1 and rms 0.27; a traverse has half
-//! of its power density left at 0.59 cycles per cell and 90 % of its energy below 0.66. Every path of
-//! evaluation (one point, portable batch, AVX2, AVX-512) performs the same `f32` operations in the
-//! same order, fused multiply–adds included, so that all give the same bits on every machine (a processor
-//! without that instruction computes it in software, several times slower).
+//! Properties, all tested: exactly zero at lattice points; range ±1 and rms 0.27; a traverse has
+//! half of its power density left at 0.59 cycles per cell and 90 % of its energy below 0.66. Every
+//! path of evaluation (one point, portable batch, AVX2, AVX-512) performs the same `f32` operations
+//! in the same order, fused multiply–adds included, so that all give the same bits on every machine
+//! (a processor without that instruction computes it in software, several times slower).
 //!
 //! Cells are numbered with 32 bits: after 2³² of them (170 km at 0.04 mm) the noise repeats. Beyond
 //! 2⁵¹ cells, numbers in `f64` have no fraction left to speak of.
@@ -88,13 +89,13 @@ impl GradientNoise3d {
         Self { seed, level: Level::detect() }
     }
 
-    /// The same lattice evaluated with other instructions; the bits stay.
+    /// Lattice evaluated with other instructions; the bits stay.
     #[must_use]
     pub fn on(self, level: Level) -> Self {
         Self { level, ..self }
     }
 
-    /// How batches are evaluated.
+    /// Instructions that evaluate batches.
     #[must_use]
     pub fn level(&self) -> Level {
         self.level
@@ -208,9 +209,9 @@ fn gradient(lattice: u32) -> &'static [f32; 3] {
 /// √15, and a quarter of it: 30 (c² − ¼)² = 2 (√15 c² − √15/4)².
 const ROOT_15: f32 = 3.872_983_3;
 
-/// Quintic blend about the middle of the cell, ½ + c (15/8 − c² (5 − 6 c²)), and its slope
-/// 30 (c² − ¼)²: exact at both ends, and eight times closer to the true curve in `f32` than the usual
-/// form, whose 10 − 9 cancels.
+/// Quintic blend about the middle of the cell, ½ + c (15/8 − c² (5 − 6 c²)), and its slope 30 (c² −
+/// ¼)²: exact at both ends, and eight times closer to the true curve in `f32` than the usual form,
+/// whose 10 − 9 cancels.
 #[inline]
 fn blend(t: f32) -> (f32, f32) {
     let c = t - 0.5;

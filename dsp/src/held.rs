@@ -14,12 +14,14 @@
 //! | k_m, m_s, k_s, b_s, m_f | [`Probe`] | as in the contact model; k_m as stiff as it is pressed |
 //! | k_h, b_h | [`crate::mobility`] | the hand that holds the finger |
 //!
-//! To the first order Δs = −½ φ² Z(s): the real part damps, the imaginary part detunes. With one contact the equation is that of the whole
-//! coupled system; several contacts add up as if they did not feel each other. Against exact eigenvalues of 28 random bodies under
-//! a fingertip (`dsp/tests/held.rs`, p90 of the decays): first order 15 % at 0.1 kg and 3 % at 0.3 kg, with B 0.02 % at 0.1 kg and
-//! less above.
+//! To the first order Δs = −½ φ² Z(s): the real part damps, the imaginary part detunes. With one
+//! contact the equation is that of the whole coupled system; several contacts add up as if they did
+//! not feel each other. Against exact eigenvalues of 28 random bodies under a fingertip
+//! (`dsp/tests/held.rs`, p90 of the decays): first order 15 % at 0.1 kg and 3 % at 0.3 kg, with B
+//! 0.02 % at 0.1 kg and less above.
 //!
-//! Passive always: a decay never falls, and a body that nobody touches has the poles it had, to the bit.
+//! Passive always: a decay never falls, and a body that nobody touches has the poles it had, to the
+//! bit.
 
 use crate::micro_contact::Probe;
 use crate::mobility::HAND_HZ;
@@ -27,7 +29,8 @@ use core::f64::consts::TAU;
 
 /// Newton's steps: where the first is good at all the third changes nothing that could be heard.
 const STEPS: usize = 3;
-/// A step of Newton's goes no further than this share of the frequency: beyond, the mode is the finger's rather than the body's.
+/// A step of Newton's goes no further than this share of the frequency: beyond, the mode is the
+/// finger's rather than the body's.
 const LONGEST_STEP: f64 = 0.25;
 
 /// A complex number.
@@ -51,15 +54,18 @@ pub struct Pole {
 /// One contact that presses on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold<'a> {
-    /// What presses, as stiff as it is pressed.
+    /// Pressing contact, as stiff as it is pressed.
     pub probe: &'a Probe,
-    /// Every mode's motion at its place, along the press, kg^−½; modes beyond the list do not move there.
+    /// Every mode's motion at its place, along the press, kg^−½; modes beyond the list do not move
+    /// there.
     pub phi_per_sqrt_kg: &'a [f64],
 }
 
-/// Where mode `mode` of a body is while the contacts of `holds` press. The time is proportional to modes times contacts.
+/// Frequency and decay of mode `mode` of a body while the contacts of `holds` press. The time is
+/// proportional to modes times contacts.
 ///
-/// A mode that there is not is nowhere: `None`. Where a number is not finite the mode stays as it is.
+/// A mode that there is not is nowhere: `None`. Where a number is not finite the mode stays as it
+/// is.
 #[must_use]
 pub fn held(free: &[Pole], mode: usize, holds: &[Hold<'_>]) -> Option<Pole> {
     let own = *free.get(mode)?;

@@ -1,5 +1,5 @@
-//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
-//! `docs/formats.md` prints it.
+//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files
+//! quote it, and `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
 
@@ -12,9 +12,9 @@ pub struct Range {
     pub low: f64,
     /// … and largest value.
     pub high: f64,
-    /// Whether `low` itself is refused.
+    /// True where `low` itself is refused.
     pub above: bool,
-    /// The same as the end of the sentence "must be …".
+    /// Range as the end of the sentence "must be …".
     pub words: &'static str,
 }
 
@@ -31,7 +31,7 @@ impl Range {
         Self { low, high, above: true, words }
     }
 
-    /// Whether a value is accepted; nothing that is not finite is.
+    /// Tests whether a value is accepted; nothing that is not finite is.
     #[must_use]
     pub const fn holds(&self, value: f64) -> bool {
         value.is_finite()
@@ -48,8 +48,8 @@ impl Range {
     }
 }
 
-/// Largest force pressing a contact onto a surface, N: a wedged box in a physics engine reaches some thousands for
-/// a step.
+/// Largest force pressing a contact onto a surface, N: a wedged box in a physics engine reaches
+/// some thousands for a step.
 pub const MAX_NORMAL_FORCE_N: f64 = 1e4;
 /// Force of a report: one below zero presses with none.
 pub const NORMAL_FORCE_N: Range =
@@ -58,10 +58,10 @@ pub const NORMAL_FORCE_N: Range =
 pub const MAX_RELIEF_M: f64 = 10.0;
 /// Height of white over black of an image.
 pub const RELIEF_M: Range = Range::new(0.0, MAX_RELIEF_M, "0 to 10 m");
-/// How far the relief of a whole surface reaches from zero.
+/// Largest distance of a whole surface's relief from zero.
 pub const REACH_M: Range = Range::new(0.0, MAX_RELIEF_M, "a surface within ±10 m of zero");
-/// Farthest that a height may lie from zero, m: the relief, what its interpolation overshoots by, and the overlay.
-/// Beyond, the guard of the contact holds the last good height.
+/// Farthest that a height may lie from zero, m: the relief, what its interpolation overshoots by,
+/// and the overlay. Beyond, the guard of the contact holds the last good height.
 pub const MAX_HEIGHT_M: f64 = 2.0 * MAX_RELIEF_M;
 /// Fastest tangential, closing or striking speed, m/s.
 pub const MAX_SPEED_M_S: f64 = 100.0;
@@ -83,13 +83,13 @@ pub const OUTER_SCALE_M: Range = Range::new(1e-5, 1.0, "1e-5 to 1 m");
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
 /// Each coordinate of a place in a body.
 pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
-/// How deep a tip stands below a surface; below 0 above it.
+/// Depth of a tip below a surface; below 0 above it.
 pub const TIP_DEPTH_M: Range = Range::new(-1e3, 1.0, "-1000 to 1 m");
 /// Length of a direction, of which only the direction counts.
 pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
-/// How far a surface gives way under a newton; 0 = hard.
+/// Compliance of a surface under a newton; 0 = hard.
 pub const COMPLIANCE_M_N: Range = Range::new(0.0, 0.1, "0 to 0.1 m/N");
 /// Friction coefficient.
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
@@ -102,7 +102,7 @@ pub const TIME_SCALE: Range = Range::new(0.01, 100.0, "0.01 to 100");
 /// Game time of a report with a live clock, s.
 pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
 
-/// What touches.
+/// Probe.
 pub mod probe {
     use super::Range;
 
@@ -126,7 +126,7 @@ pub mod probe {
     pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
 }
 
-/// What strikes.
+/// Striker.
 pub mod impact {
     use super::Range;
 
@@ -142,7 +142,7 @@ pub mod impact {
     pub const IMPORTANCE: Range = Range::new(0.0, 1e6, "0 to 1e6");
 }
 
-/// What things are made of.
+/// Material.
 pub mod material {
     use super::Range;
 
@@ -166,7 +166,7 @@ pub mod material {
     pub const RESIDUAL: Range = Range::new(0.0, 1e3, "0 to 1e3 (a gain)");
 }
 
-/// What a whole engine runs at, and what it plays on.
+/// Rates and outputs of a whole engine.
 pub mod output {
     use super::Range;
 
@@ -186,11 +186,11 @@ pub mod output {
     pub const LOWPASS_HZ: Range = Range::new(0.0, 2e4, "0 to 20000 Hz, 0 = off");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
     pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
-    /// How much of its signal a port holds for a late reader.
+    /// Span of its signal that a port holds for a late reader.
     pub const PORT_HOLDS_S: Range = Range::new(1e-3, 60.0, "1e-3 to 60 s");
     /// Rows a second of a force port.
     pub const FORCE_RATE_HZ: Range = Range::new(1.0, 2e4, "1 to 20000 Hz");
-    /// How long a contact goes on without a report.
+    /// Time that a contact goes on without a report.
     pub const CONTACT_TIMEOUT_S: Range = Range::new(0.01, 3600.0, "0.01 to 3600 s");
 }
 
@@ -216,11 +216,11 @@ pub mod sand {
     pub const GRAIN_M: Range = Range::new(1e-5, 0.01, "1e-5 to 0.01 m");
     /// Largest force.
     pub const CAP_N: Range = Range::above(0.0, 1e3, "above 0, to 1000 N");
-    /// How much more a tool is carried than a sphere of 5 mm.
+    /// Bearing of a tool over a sphere of 5 mm.
     pub const BEARING: Range = Range::above(0.0, 1e6, "above 0, to 1e6");
     /// Hardness of a layer over that of the top.
     pub const HARDNESS: Range = Range::new(0.01, 1e3, "0.01 to 1000");
-    /// Where a layer begins.
+    /// Beginning of a layer.
     pub const LAYER_FROM_M: Range =
         Range::above(0.0, 1.0, "above 0, to 1 m, and deeper than the layer before it");
     /// Place of a buried object along one side.
@@ -229,7 +229,7 @@ pub mod sand {
     pub const BURIED_TOP_M: Range = Range::new(0.0, 0.45, "0 to 0.45 m");
     /// Half its width.
     pub const BURIED_HALF_M: Range = Range::new(1e-4, 1.0, "1e-4 to 1 m");
-    /// How much lower it is there.
+    /// Drop there.
     pub const BURIED_HEIGHT_M: Range = Range::new(1e-5, 0.45, "1e-5 to 0.45 m");
     /// Radius of the tool.
     pub const TOOL_RADIUS_M: Range = Range::new(1e-4, 0.2, "1e-4 to 0.2 m");

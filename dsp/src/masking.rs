@@ -1,4 +1,5 @@
-//! Masking: which of a body's modes nobody would miss first, by a published model of what hides a tone.
+//! Masking: which of a body's modes nobody would miss first, by a published model of what hides a
+//! tone.
 //!
 //! ```text
 //! level      L_m(t) = L₀ + 20 lg(a_m / a_max) − 8.686 d_m t              after a strike; L₀: the loudest mode's, dB SPL
@@ -16,24 +17,27 @@
 //! | −10 dB | a tone under a tone-like masker | **chosen**, between 6 (noise) and 18 dB (tones) of the published offsets |
 //! | t | 0, 10, 30, 100, 300 and 1000 ms | **chosen** |
 //!
-//! Modes are taken away one by one, always the one that is furthest below what hides it, and those that are left hide the others from
-//! then on. So what stays hidden is hidden by what is really heard. The order is that of a level: at another one the slopes differ.
-//! A mode that is left out is missing from the waveform all the same (10 to 22 dB below the whole on dense tables): the claim is inaudible by
-//! this model at this level, not inaudible. The time grows with the square of the number of modes.
+//! Modes are taken away one by one, always the one that is furthest below what hides it, and those
+//! that are left hide the others from then on. So what stays hidden is hidden by what is really
+//! heard. The order is that of a level: at another one the slopes differ. A mode that is left out
+//! is missing from the waveform all the same (10 to 22 dB below the whole on dense tables): the
+//! claim is inaudible by this model at this level, not inaudible. The time grows with the square of
+//! the number of modes.
 
 use crate::mode::Mode;
 
-/// When levels are compared after a strike, s.
+/// Times after a strike at which levels are compared, s.
 const TIMES_S: [f64; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 1.0];
-/// Those, and a stroke.
+/// Levels of those, and of a stroke.
 const SOUNDS: usize = TIMES_S.len() + 1;
-/// How far below the excitation of others a tone must lie, as a power: −10 dB.
+/// Distance that a tone must lie below the excitation of others, as a power: −10 dB.
 const OFFSET: f64 = 0.1;
 /// Slope of excitation towards lower frequencies, dB an ERB.
 const DOWN_DB: f64 = 27.0;
 /// Excitation below this hides nothing, dB SPL.
 const NOTHING_DB: f64 = -40.0;
-/// A mode is heard for sure, and hides others for good, where it is less than this below what hides it, dB.
+/// A mode is heard for sure, and hides others for good, where it is less than this below what hides
+/// it, dB.
 const SAFE_DB: f64 = 6.0;
 /// Power of the quietest level that is told apart: −600 dB.
 const LEAST: f64 = 1e-60;
@@ -43,22 +47,24 @@ const LEAST: f64 = 1e-60;
 pub struct Ranked {
     /// Its place among the modes that were given.
     pub index: usize,
-    /// How far below what hides it the mode is when all less important ones are gone, at the time when it sticks out most, dB; below
-    /// zero it is heard.
+    /// Distance of the mode below what hides it when all less important ones are gone, at the time
+    /// when it sticks out most, dB; below zero it is heard.
     pub margin_db: f64,
     erb: f64,
     quiet: f64,
     level_db: [f64; SOUNDS],
     /// One over its power.
     quietness: [f64; SOUNDS],
-    /// What the others excite where it is.
+    /// Excitation by the others where it is.
     excited: [f64; SOUNDS],
 }
 
-/// Ranks modes from the most to the least important, where the loudest starts at `loudest_db_spl`; `order` has a place for each of them.
+/// Ranks modes from the most to the least important, where the loudest starts at `loudest_db_spl`;
+/// `order` has a place for each of them.
 ///
-/// The time grows with the square of `most`: of more modes than that only those that stick out most over the threshold in quiet are compared with
-/// each other, and the others follow behind, by how far they stick out of what those excite that are heard.
+/// The time grows with the square of `most`: of more modes than that only those that stick out most
+/// over the threshold in quiet are compared with each other, and the others follow behind, by how
+/// far they stick out of what those excite that are heard.
 ///
 /// ```
 /// use asperity_dsp::masking::{Ranked, audible_count, perceptual_order};
@@ -108,7 +114,8 @@ pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64, most: usize, order:
     others.sort_unstable_by(|a, b| a.margin_db.total_cmp(&b.margin_db).then(a.index.cmp(&b.index)));
 }
 
-/// How many modes of an order are left when all that are `safety_db` below what hides them are gone.
+/// Number of modes of an order that are left when all that are `safety_db` below what hides them
+/// are gone.
 #[must_use]
 pub fn audible_count(order: &[Ranked], safety_db: f64) -> usize {
     // From the least important on, until one is heard.
@@ -116,7 +123,7 @@ pub fn audible_count(order: &[Ranked], safety_db: f64) -> usize {
 }
 
 impl Ranked {
-    /// What hides it over its own power, where it sticks out most.
+    /// Excitation that hides it over its own power, where it sticks out most.
     fn hidden(&self) -> f64 {
         let sounds = self.excited.iter().zip(&self.quietness);
         sounds
@@ -125,7 +132,7 @@ impl Ranked {
     }
 }
 
-/// How strongly a mode answers to a steady force.
+/// Response of a mode to a steady force.
 fn stroked(mode: &Mode) -> f64 {
     mode.amplitude.abs() / libm::sqrt(mode.decay_per_s.max(1e-3))
 }
@@ -187,7 +194,7 @@ pub fn quiet_db_spl(frequency_hz: f64) -> f64 {
     3.64 * libm::pow(khz, -0.8) - 6.5 * libm::exp(-0.6 * ear_canal * ear_canal) + 1e-3 * khz * khz * khz * khz
 }
 
-/// Of a level, dB.
+/// Power of a level, dB.
 fn power(level_db: f64) -> f64 {
     libm::exp(level_db * (core::f64::consts::LN_10 / 10.0))
 }
@@ -210,7 +217,8 @@ mod tests {
 
     #[test]
     fn the_threshold_in_quiet_and_the_scale_are_the_published_ones() {
-        // Terhardt's curve: 3.4 dB at 1 kHz, lowest between 3 and 4 kHz; Glasberg and Moore: 15.6 ERB at 1 kHz.
+        // Terhardt's curve: 3.4 dB at 1 kHz, lowest between 3 and 4 kHz; Glasberg and Moore: 15.6
+        // ERB at 1 kHz.
         assert!((quiet_db_spl(1000.0) - 3.37).abs() < 0.02 && quiet_db_spl(3300.0) < -4.5);
         assert!((erb_number(1000.0) - 15.62).abs() < 0.02);
     }

@@ -13,17 +13,19 @@
 //! | x_s, v_s | its output | pad |
 //! | k_h, b_h | [`HAND_HZ`] | the hand that brings the finger back, critically damped |
 //!
-//! Source: the masses, spring and damper of Hasti §III-C without their surface. The hand is ours and **assumed**: without one a blow would
-//! send the finger away for ever; it is slower than anything a vibration actuator plays.
+//! Source: the masses, spring and damper of Hasti §III-C without their surface. The hand is ours
+//! and **assumed**: without one a blow would send the finger away for ever; it is slower than
+//! anything a vibration actuator plays.
 //!
-//! The step is the exact solution for a force that is constant over it (a matrix exponential at design time), so the pad's velocity
-//! after a blow is exact whatever its length, and a sine of frequency f errs by the hold alone: −0.02 dB at 1 kHz of 44.1.
+//! The step is the exact solution for a force that is constant over it (a matrix exponential at
+//! design time), so the pad's velocity after a blow is exact whatever its length, and a sine of
+//! frequency f errs by the hold alone: −0.02 dB at 1 kHz of 44.1.
 
 use crate::DesignError;
 use crate::micro_contact::Probe;
 use core::f64::consts::TAU;
 
-/// How fast a hand brings a finger back, Hz. **Assumed**: voluntary movement ends near it.
+/// Rate at which a hand brings a finger back, Hz. **Assumed**: voluntary movement ends near it.
 pub const HAND_HZ: f64 = 5.0;
 
 /// Pad position and velocity, finger position and velocity.
@@ -35,7 +37,7 @@ pub struct Mobility {
     probe: Probe,
     /// State → state over a sample.
     step: [State; 4],
-    /// What 1 N over the sample adds.
+    /// Response to 1 N over the sample.
     push: State,
 }
 
@@ -59,7 +61,8 @@ impl Mobility {
         Ok(Self { probe: *probe, step, push })
     }
 
-    /// Pad displacement over force at a frequency, m/N, real and imaginary part: the closed form that the time step samples.
+    /// Pad displacement over force at a frequency, m/N, real and imaginary part: the closed form
+    /// that the time step samples.
     #[must_use]
     pub fn compliance_m_n(&self, frequency_hz: f64) -> [f64; 2] {
         let Probe { pad_mass_kg, pad_stiffness_n_m, pad_damping_n_s_m, finger_mass_kg, .. } = self.probe;
@@ -89,7 +92,8 @@ impl MobilityState {
         [self.0[0], self.0[1]]
     }
 
-    /// Whether pad and finger are as good as at rest: less than 1e-12 m and 1e-10 m/s from it.
+    /// Tests whether pad and finger are as good as at rest: less than 1e-12 m and 1e-10 m/s from
+    /// it.
     #[must_use]
     pub fn is_still(&self) -> bool {
         let [pad_m, pad_m_s, finger_m, finger_m_s] = self.0;
@@ -97,7 +101,7 @@ impl MobilityState {
     }
 }
 
-/// What ties the finger to its place.
+/// Spring that ties the finger to its place.
 struct Hand {
     stiffness_n_m: f64,
     damping_n_s_m: f64,
@@ -194,7 +198,8 @@ mod tests {
             for frequency_hz in [20.0, 63.0, 250.0, 1000.0] {
                 let mut state = MobilityState::default();
                 let (mut re, mut im, mut count) = (0.0, 0.0, 0.0);
-                // Whole periods after the transient; the force of a sample is held, so the middle of the hold counts.
+                // Whole periods after the transient; the force of a sample is held, so the middle
+                // of the hold counts.
                 for n in 0..(5.0 * RATE_HZ) as usize {
                     let angle = TAU * frequency_hz * (n as f64 + 0.5) / RATE_HZ;
                     let [pad_m, _] = state.tick(&design, libm::cos(angle));

@@ -1,7 +1,7 @@
 //! Two `f64` side by side, one register on every processor with vectors.
 //!
-//! Left to itself the compiler pairs other numbers than those that wait for each other. Each operation is one IEEE
-//! operation a lane, so that every processor gives the same bits.
+//! Left to itself the compiler pairs other numbers than those that wait for each other. Each
+//! operation is one IEEE operation a lane, so that every processor gives the same bits.
 
 use crate::simd::{BASE, Base};
 use core::ops::{Add, Mul, Sub};

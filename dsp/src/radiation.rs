@@ -13,15 +13,19 @@
 //! | σ_l | [`efficiency`] | how well order l radiates, against a plane wave; h_l the outgoing spherical Hankel function |
 //! | q' | | the mode's velocity, m/s·kg^½: the impulse of a strike times φ·n̂ where it hits |
 //!
-//! p² is the mean over all directions of the squared amplitude. For a sphere the equations are exact, and the usual rule of one efficiency
-//! (ka)²/(1 + (ka)²) for every mode is too loud by 20 dB at l = 2 and ka = 0.2, by 77 at l = 3: small bodies would boom. For other bodies
-//! they are ours: the axes are made equal before a direction is taken, because on a flat body the directions of all points lie near its rim.
-//! Against a boundary-element solution (`dsp/tests/radiation.rs`): opposed pistons on three boxes 2.6 dB at
-//! most, 144 patterns and frequencies from pistons to second bending 1.4 dB median, 5.7 dB worst. Directions differ; a listener's place is not asked for.
+//! p² is the mean over all directions of the squared amplitude. For a sphere the equations are
+//! exact, and the usual rule of one efficiency (ka)²/(1 + (ka)²) for every mode is too loud by 20
+//! dB at l = 2 and ka = 0.2, by 77 at l = 3: small bodies would boom. For other bodies they are
+//! ours: the axes are made equal before a direction is taken, because on a flat body the directions
+//! of all points lie near its rim. Against a boundary-element solution (`dsp/tests/radiation.rs`):
+//! opposed pistons on three boxes 2.6 dB at most, 144 patterns and frequencies from pistons to
+//! second bending 1.4 dB median, 5.7 dB worst. Directions differ; a listener's place is not asked
+//! for.
 //!
-//! The integrals run over the triangles as they lie. Of a ball whose triangles are flat they leak a little of every order into the lower ones, which
-//! radiate up to 130 dB better: so where all points lie on one sphere ([`BALL`]) the c_lm are those that give the motion *at the points*, which
-//! the sphere's own harmonics do without a leak.
+//! The integrals run over the triangles as they lie. Of a ball whose triangles are flat they leak a
+//! little of every order into the lower ones, which radiate up to 130 dB better: so where all
+//! points lie on one sphere ([`BALL`]) the c_lm are those that give the motion *at the points*,
+//! which the sphere's own harmonics do without a leak.
 //!
 //! A stiff body that is struck also clicks, because it is pushed as a whole ([`click_pa`]).
 
@@ -36,7 +40,8 @@ pub const ORDERS: usize = 9;
 /// The flattest a body may count as: a sheet has no thickness.
 const FLATTEST: f64 = 1e-3;
 
-/// How far the points of a ball may be from their sphere, and the least share of its volume that their triangles enclose.
+/// Largest distance of the points of a ball from their sphere, and the least share of its volume
+/// that their triangles enclose.
 pub const BALL: [f64; 2] = [1e-4, 0.8];
 /// Passes after which the motion at a ball's points is met, if it can be.
 const PASSES: usize = 40;
@@ -95,7 +100,7 @@ impl Surface<'_> {
 }
 
 impl EquivalentSphere {
-    /// Of a body's surface; none where it has no area.
+    /// Sphere of a body's surface; none where it has no area.
     #[must_use]
     pub fn of(surface: &Surface<'_>) -> Option<Self> {
         let (mut area, mut volume_m3, mut sum) = (0.0, 0.0, [0.0; 3]);
@@ -131,7 +136,7 @@ impl EquivalentSphere {
         )
     }
 
-    /// The same where all points lie on one sphere: that sphere itself.
+    /// Sphere where all points lie on one: that sphere itself.
     fn ball(self, surface: &Surface<'_>) -> Self {
         let (mut centre_m, mut radius_m) = (self.centre_m, self.radius_m);
         for _ in 0..PASSES {
@@ -190,12 +195,14 @@ impl EquivalentSphere {
         c.map(|row| row.iter().map(|x| x * x).sum())
     }
 
-    /// Harmonics that give the motion of a ball along its normal at its points; none where there are too few points to tell them apart.
+    /// Harmonics that give the motion of a ball along its normal at its points; none where there
+    /// are too few points to tell them apart.
     fn met_at_points(&self, surface: &Surface<'_>, motion: &impl Fn(usize) -> [f64; 3]) -> Option<Harmonics> {
         let (mut c, mut y) = ([[0.0; 2 * ORDERS - 1]; ORDERS], [[0.0; 2 * ORDERS - 1]; ORDERS]);
         let (mut before, mut first): (f64, f64) = (f64::INFINITY, 0.0);
         for _ in 0..PASSES {
-            // What is not met yet, projected as it is: the harmonics are orthonormal but for the mesh.
+            // What is not met yet, projected as it is: the harmonics are orthonormal but for the
+            // mesh.
             let mut missing = [[0.0; 2 * ORDERS - 1]; ORDERS];
             let mut area = 0.0;
             for facet in surface.facets() {
@@ -224,7 +231,8 @@ impl EquivalentSphere {
         None
     }
 
-    /// Amplitude of the pressure at 1 m, mean square over all directions, a unit of the mode's velocity: Pa / (m/s·kg^½).
+    /// Amplitude of the pressure at 1 m, mean square over all directions, a unit of the mode's
+    /// velocity: Pa / (m/s·kg^½).
     #[must_use]
     pub fn pressure_pa_s_m(&self, multipoles: &[f64; ORDERS], frequency_hz: f64) -> f64 {
         AIR_KG_M3
@@ -233,7 +241,7 @@ impl EquivalentSphere {
             * libm::sqrt(self.radiated(multipoles, frequency_hz) / (4.0 * PI))
     }
 
-    /// What radiation adds to the decay of the mode, 1/s.
+    /// Decay that radiation adds to the mode, 1/s.
     #[must_use]
     pub fn loss_per_s(&self, multipoles: &[f64; ORDERS], frequency_hz: f64) -> f64 {
         let area = self.radius_m * self.radius_m;
@@ -254,13 +262,15 @@ impl EquivalentSphere {
     }
 }
 
-/// σ_l: power that order l of a sphere radiates over that of a plane wave of the same mean square velocity; 0 to about 1.3.
+/// σ_l: power that order l of a sphere radiates over that of a plane wave of the same mean square
+/// velocity; 0 to about 1.3.
 #[must_use]
 pub fn efficiency(order: usize, ka: f64) -> f64 {
     if !(ka > 0.0 && ka.is_finite()) {
         return 0.0;
     }
-    // j and y, the previous order and this one, upwards; |h| is that of y where j would lose its digits.
+    // j and y, the previous order and this one, upwards; |h| is that of y where j would lose its
+    // digits.
     let (sin, cos) = (libm::sin(ka), libm::cos(ka));
     let (mut before, mut now) = ([cos / ka, sin / ka], [sin / ka, -cos / ka]);
     for l in 0..order {
@@ -274,10 +284,12 @@ pub fn efficiency(order: usize, ka: f64) -> f64 {
     if sigma.is_finite() { sigma } else { 0.0 }
 }
 
-/// Peak of the click at 1 m with which a stiff body of `volume_m3` answers a blow that changes its speed by `speed_m_s` within `contact_time_s`, Pa.
+/// Peak of the click at 1 m with which a stiff body of `volume_m3` answers a blow that changes its
+/// speed by `speed_m_s` within `contact_time_s`, Pa.
 ///
-/// p = 3 ρ V j / (8 π c r) with the jerk j = 8 v / τ² of a pulse of length τ, and never more than ρ c v a / r (Qu & James 2019, through a secondary
-/// source; the pulse taken as a parabola-like hump whose force rises to its peak 2 v / τ in half of its time: ours).
+/// p = 3 ρ V j / (8 π c r) with the jerk j = 8 v / τ² of a pulse of length τ, and never more than ρ
+/// c v a / r (Qu & James 2019, through a secondary source; the pulse taken as a parabola-like hump
+/// whose force rises to its peak 2 v / τ in half of its time: ours).
 #[must_use]
 pub fn click_pa(volume_m3: f64, speed_m_s: f64, contact_time_s: f64) -> f64 {
     let radius_m = libm::cbrt(3.0 * volume_m3 / (4.0 * PI));

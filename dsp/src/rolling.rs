@@ -18,36 +18,41 @@
 //! | rms, α | [`Rolling::rms_at_1mm_m`], [`Rolling::alpha`] | the ground: rms of the octave about 1 mm, spectral exponent |
 //! | F, E* | [`Rolling::normal_force_n`], [`Rolling::modulus_pa`] | |
 //!
-//! What slides sends edges and asperities of its own through the ground, each as sharp as a tip; what rolls is laid down on it: its surface meets the
-//! ground without a relative speed, from above, and only as a whole ball.
+//! What slides sends edges and asperities of its own through the ground, each as sharp as a tip;
+//! what rolls is laid down on it: its surface meets the ground without a relative speed, from
+//! above, and only as a whole ball.
 //!
-//! - It reaches no valley sharper than itself: λ_d, the law of [`crate::fractal_noise`]'s dilation, below which the amplitudes of octaves fall by one
-//!   power of λ more, as behind a first-order low-pass.
-//! - Asperities enter and leave its patch of contact one after the other: λ_p, where the measured filter of a wheel's patch, 1/(1 + π/4 (k a)³), is at
-//!   −3 dB (P. J. Remington 1976; D. J. Thompson, "Railway noise and vibration", 2009 §5.4; **recalled**). Its fall lies between first and second
-//!   order, within 2 dB of the second down to a seventh of λ_p. On rough ground the patch is wider than Hertz': asperities touch as far out as the gap under the ball
-//!   is no wider than they are high (J. A. Greenwood, J. H. Tripp 1967, **recalled**).
-//! - Where a tip gives way by itself, a ball is rigid: all of its mass M follows the ground, up to its resonance on the contact. A body that rolls
-//!   free presses with its weight.
+//! - It reaches no valley sharper than itself: λ_d, the law of [`crate::fractal_noise`]'s dilation,
+//!   below which the amplitudes of octaves fall by one power of λ more, as behind a first-order
+//!   low-pass.
+//! - Asperities enter and leave its patch of contact one after the other: λ_p, where the measured
+//!   filter of a wheel's patch, 1/(1 + π/4 (k a)³), is at −3 dB (P. J. Remington 1976; D. J.
+//!   Thompson, "Railway noise and vibration", 2009 §5.4; **recalled**). Its fall lies between first
+//!   and second order, within 2 dB of the second down to a seventh of λ_p. On rough ground the
+//!   patch is wider than Hertz': asperities touch as far out as the gap under the ball is no wider
+//!   than they are high (J. A. Greenwood, J. H. Tripp 1967, **recalled**).
+//! - Where a tip gives way by itself, a ball is rigid: all of its mass M follows the ground, up to
+//!   its resonance on the contact. A body that rolls free presses with its weight.
 //!
-//! Direction as published: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic",
-//! 2001, **recalled**). Trapezoidal, so that ω may change from sample to sample.
+//! Direction as published: rolling is heard through more of a low-pass than sliding (K. van den
+//! Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic", 2001, **recalled**). Trapezoidal, so that ω may
+//! change from sample to sample.
 
 use core::f64::consts::PI;
 
 /// Curvature of the octave that a ball just follows, times its radius.
 const FOLLOWED_CURVATURE: f64 = 0.63;
-/// Where the law of amplitudes is pinned, m.
+/// Wavelength at which the law of amplitudes is pinned, m.
 const PINNED_M: f64 = 1e-3;
 /// Wavelengths between which the law is used, m.
 const WAVELENGTH_M: (f64, f64) = (1e-6, 1.0);
 
-/// What rolls on what.
+/// Pair of what rolls and what it rolls on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rolling {
     /// Radius of the body that rolls, m.
     pub radius_m: f64,
-    /// What presses, N.
+    /// Pressing force, N.
     pub normal_force_n: f64,
     /// E/(1 − ν²) of the ground, Pa.
     pub modulus_pa: f64,
@@ -72,7 +77,8 @@ impl Rolling {
     }
 }
 
-/// Highest corner over the rate: up to it the path is a mean of what it has ridden, and never beyond it.
+/// Highest corner over the rate: up to it the path is a mean of what it has ridden, and never
+/// beyond it.
 const HIGHEST: f64 = 0.25;
 
 /// The low-pass at one speed.
@@ -114,7 +120,7 @@ impl RollingState {
     }
 }
 
-/// What a body that rolls sends of the force of a point.
+/// Force that a rolling body sends of the force of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RollingForce {
     mass_gain: f64,
@@ -269,7 +275,8 @@ mod tests {
 
     #[test]
     fn it_is_what_scipy_s_bilinear_filter_gives() {
-        // scipy.signal.lfilter(*bilinear([1], [1/w, 1], 44100)), w pre-warped to 100 Hz, of an impulse.
+        // scipy.signal.lfilter(*bilinear([1], [1/w, 1], 44100)), w pre-warped to 100 Hz, of an
+        // impulse.
         let filter = RollingFilter::new(0.1, 1e-3, RATE_HZ);
         let mut state = RollingState::default();
 

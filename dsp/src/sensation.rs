@@ -11,14 +11,15 @@
 //! | \|W\| | [`Sensation::gain`] | 1 near 250 Hz, where a fingertip feels best; 1/100 is 40 dB less sensitive |
 //! | ω₀ … ω₃ | [`ZERO_HZ`], [`SECTIONS`] | fitted by us |
 //!
-//! Source: [`THRESHOLD_DB`], its inverse fitted from 12 to 800 Hz by least squares: 0.9 dB at worst. The three sections are trapezoidal state-variable filters in `f64`, so a slow path
-//! under a fast vibration costs no accuracy.
+//! Source: [`THRESHOLD_DB`], its inverse fitted from 12 to 800 Hz by least squares: 0.9 dB at
+//! worst. The three sections are trapezoidal state-variable filters in `f64`, so a slow path under
+//! a fast vibration costs no accuracy.
 
 use crate::DesignError;
 use core::f64::consts::PI;
 
-/// Detection threshold of a fingertip, (Hz, dB re 1 µm rms): Bolanowski, Gescheider, Verrillo and Checkosky 1988 (thenar, 2.9 cm²; peak
-/// values less 3 dB). **Recalled**, to about 3 dB.
+/// Detection threshold of a fingertip, (Hz, dB re 1 µm rms): Bolanowski, Gescheider, Verrillo and
+/// Checkosky 1988 (thenar, 2.9 cm²; peak values less 3 dB). **Recalled**, to about 3 dB.
 pub const THRESHOLD_DB: [(f64, f64); 11] = [
     (10.0, 13.0),
     (16.0, 10.0),
@@ -68,7 +69,7 @@ pub(crate) struct SectionState {
     low: f64,
 }
 
-/// What a section gives for one sample.
+/// Output of a section for one sample.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SectionOutput {
     pub(crate) low: f64,
@@ -100,7 +101,8 @@ impl SectionState {
 }
 
 impl Sensation {
-    /// At `sample_rate_hz`, from 1.5 kHz on: below, the highest section would lie beyond what is sampled.
+    /// At `sample_rate_hz`, from 1.5 kHz on: below, the highest section would lie beyond what is
+    /// sampled.
     ///
     /// # Errors
     /// When the rate is refused.
@@ -166,7 +168,8 @@ mod tests {
             for frequency_hz in [20.0, 55.0, 100.0, 160.0, 250.0, 400.0] {
                 let want = Sensation::gain(frequency_hz) * core::f64::consts::FRAC_1_SQRT_2;
                 let got = through(frequency_hz, rate_hz);
-                // The trapezoidal rule bends what lies between its fixed points: 2 % at 400 Hz of 8 kHz.
+                // The trapezoidal rule bends what lies between its fixed points: 2 % at 400 Hz of 8
+                // kHz.
                 assert!((got / want - 1.0).abs() < 0.04, "{rate_hz} {frequency_hz}: {got} for {want}");
             }
         }

@@ -1,7 +1,8 @@
 //! SIMD: the one room that knows which instructions this processor has.
 //!
-//! A [`Level`] is found once and carried by every design. A kernel is written once, over the vectors of `fearless_simd`, whose values exist
-//! only where their instructions do; `at_level!` compiles it for each set and picks the one of a level. Nothing else in the crate asks the
+//! A [`Level`] is found once and carried by every design. A kernel is written once, over the
+//! vectors of `fearless_simd`, whose values exist only where their instructions do; `at_level!`
+//! compiles it for each set and picks the one of a level. Nothing else in the crate asks the
 //! processor anything.
 //!
 //! | level | vectors | a · b + c |
@@ -11,8 +12,9 @@
 //! | AVX2 with FMA (x86-64-v3) | 256 bits | rounds once |
 //! | AVX-512 (Ice Lake and later) | 512 bits | rounds once |
 //!
-//! Where a kernel must give the same bits everywhere it never asks for a · b + c in one operation. Where it does, all sets that round
-//! once agree with each other to the bit, and all that round twice do.
+//! Where a kernel must give the same bits everywhere it never asks for a · b + c in one operation.
+//! Where it does, all sets that round once agree with each other to the bit, and all that round
+//! twice do.
 
 mod set;
 mod vector;
@@ -25,7 +27,8 @@ pub(crate) use vector::{Eight, Sixteen, Vector};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Isa {
-    /// What every processor of the build target has; multiplication and addition round apart.
+    /// Instructions that every processor of the build target has; multiplication and addition round
+    /// apart.
     Portable,
     /// 64-bit ARM.
     Neon,
@@ -80,7 +83,8 @@ pub enum Token {
     Avx512(fearless_simd::Avx512),
 }
 
-/// The vectors every processor of the target has, for numbers that are never multiplied and added at once.
+/// The vectors every processor of the target has, for numbers that are never multiplied and added
+/// at once.
 #[cfg(target_arch = "x86_64")]
 pub(crate) type Base = fearless_simd::Sse2;
 #[cfg(target_arch = "aarch64")]
@@ -96,7 +100,8 @@ pub(crate) type Base = fearless_simd::Fallback;
 
 /// The right to use them.
 #[allow(unsafe_code)]
-// SAFETY: every x86-64 processor has SSE2 and FXSR, every aarch64 NEON, or could not run a program of this target.
+// SAFETY: every x86-64 processor has SSE2 and FXSR, every aarch64 NEON, or could not run a program
+// of this target.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(crate) const BASE: Base = unsafe { Base::assume_supported() };
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -108,8 +113,9 @@ pub(crate) const BASE: Base = Base::assume_supported();
 )))]
 pub(crate) const BASE: Base = Base::new();
 
-/// Runs an expression with the token of a level, compiled for its instruction set: `at_level!(level, s => kernel(s, …))`. All that the
-/// expression calls must be `#[inline(always)]`.
+/// Runs an expression with the token of a level, compiled for its instruction set:
+/// `at_level!(level, s => kernel(s, …))`. All that the expression calls must be
+/// `#[inline(always)]`.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! at_level {
@@ -201,7 +207,7 @@ impl Level {
         }
     }
 
-    /// The same with vectors of at most 256 bits, for kernels that gain nothing from wider ones.
+    /// Dispatch with vectors of at most 256 bits, for kernels that gain nothing from wider ones.
     #[must_use]
     pub fn at_most_256_bits(self) -> Self {
         #[cfg(target_arch = "x86_64")]

@@ -13,13 +13,14 @@
 //! | μ, h' | arguments of [`friction_force_n`] | friction coefficient, slope of the relief along the motion |
 //! | u | output of [`TangentialState::tick`] | m, along the motion |
 //!
-//! Source: Wiertlewski & Hayward 2012, who drove fingertips *tangentially* (k and b through a secondary source, m through another):
-//! here their constants stand in the direction in which they were measured. Seven people, 0.5 N: k 600–2000 N/m, b 0.75–2.38 N·s/m.
-//! The friction force is the balance of a Coulomb contact on a slope.
+//! Source: Wiertlewski & Hayward 2012, who drove fingertips *tangentially* (k and b through a
+//! secondary source, m through another): here their constants stand in the direction in which they
+//! were measured. Seven people, 0.5 N: k 600–2000 N/m, b 0.75–2.38 N·s/m. The friction force is the
+//! balance of a Coulomb contact on a slope.
 //!
-//! The step is exact for a force that runs on a parabola through its last three values, so nothing waits for a later one: a
-//! force that is a polynomial of degree two is answered to rounding, a sine of 500 Hz at 44.1 kHz within −80 dB. When N changes,
-//! position and velocity stay.
+//! The step is exact for a force that runs on a parabola through its last three values, so nothing
+//! waits for a later one: a force that is a polynomial of degree two is answered to rounding, a
+//! sine of 500 Hz at 44.1 kHz within −80 dB. When N changes, position and velocity stay.
 
 use crate::DesignError;
 
@@ -38,9 +39,11 @@ pub const FIRMEST_N: f64 = 20.0;
 /// Steepest 1 − μ h' that still counts: beyond, the contact would lock.
 const LEAST_DENOMINATOR: f64 = 0.1;
 
-/// Friction force of a finger pressed with `normal_force_n` on a slope dh/ds `slope` along its motion, N.
+/// Friction force of a finger pressed with `normal_force_n` on a slope dh/ds `slope` along its
+/// motion, N.
 ///
-/// Linear in the normal force; where 1 − μ h' falls below 0.1 the contact would lock, and the force stays that of 0.1.
+/// Linear in the normal force; where 1 − μ h' falls below 0.1 the contact would lock, and the force
+/// stays that of 0.1.
 #[inline]
 #[must_use]
 pub fn friction_force_n(normal_force_n: f64, friction: f64, slope: f64) -> f64 {
@@ -56,7 +59,7 @@ pub struct Tangential {
     damping_n_s_m: f64,
     /// (u, u') → (u, u') over a sample.
     step: [[f64; 2]; 2],
-    /// What 1 N in this sample, the last and the one before adds.
+    /// Response to 1 N in this sample, the last and the one before.
     push: [[f64; 3]; 2],
 }
 
@@ -73,7 +76,8 @@ impl Tangential {
     /// A finger whose moving skin weighs `mass_kg`, pressed with `normal_force_n`.
     ///
     /// # Errors
-    /// When the mass is outside 1e-6–0.1 kg, the rate outside 1 kHz–20 MHz, or the force is not finite or negative.
+    /// When the mass is outside 1e-6–0.1 kg, the rate outside 1 kHz–20 MHz, or the force is not
+    /// finite or negative.
     pub fn new(mass_kg: f64, normal_force_n: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
         DesignError::check("mass_kg", mass_kg, "1e-6 to 0.1 kg", |m| (1e-6..=0.1).contains(&m))?;
         DesignError::check("sample_rate_hz", sample_rate_hz, "from 1 kHz to 20 MHz", |r| {
@@ -92,7 +96,8 @@ impl Tangential {
         Ok(unpressed.pressed_with(normal_force_n))
     }
 
-    /// The same finger, pressed with another force; infallible, and a few dozen operations. What is no number counts as the lightest touch.
+    /// Finger pressed with another force; infallible, and a few dozen operations. What is no number
+    /// counts as the lightest touch.
     #[must_use]
     #[expect(clippy::manual_clamp, reason = "what is no number becomes the lightest touch")]
     pub fn pressed_with(mut self, normal_force_n: f64) -> Self {
@@ -120,8 +125,8 @@ impl Tangential {
         self.damping_n_s_m
     }
 
-    /// Position and velocity after one step from rest under the force (t / h)^degree: a particular polynomial and the free motion
-    /// from what it lacks at the beginning.
+    /// Position and velocity after one step from rest under the force (t / h)^degree: a particular
+    /// polynomial and the free motion from what it lacks at the beginning.
     fn forced(&self, degree: usize) -> [f64; 2] {
         let (m, b, k, h) = (self.mass_kg, self.damping_n_s_m, self.stiffness_n_m, self.step_s);
         let mut force = [0.0; 3];
@@ -155,7 +160,7 @@ impl TangentialState {
         self.skin_m
     }
 
-    /// How fast the skin moves, m/s.
+    /// Speed of the skin, m/s.
     #[must_use]
     pub fn velocity_m_s(&self) -> f64 {
         self.skin_m_s
@@ -168,7 +173,8 @@ fn free_step(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64, h: f64) -> [[
     let apart = sigma * sigma - square;
     let root = libm::sqrt(apart.abs());
     let angle = root * h;
-    // Written with both exponents, so that neither overflows: a stiff finger at a low rate decays within a sample.
+    // Written with both exponents, so that neither overflows: a stiff finger at a low rate decays
+    // within a sample.
     let (cosine, sine) = if angle < 1e-6 {
         let decay = libm::exp(-sigma * h);
         (decay, decay * h)

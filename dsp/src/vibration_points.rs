@@ -1,4 +1,5 @@
-//! Points of a vibration: an amplitude and a frequency some hundred times a second, for hardware that plays no waveform.
+//! Points of a vibration: an amplitude and a frequency some hundred times a second, for hardware
+//! that plays no waveform.
 //!
 //! ```text
 //! S(k)  = mean over two hops of (W x)²               sensation energy
@@ -15,8 +16,9 @@
 //! | A, f | [`Point`] | what the device plays from `tick / rate_hz` on |
 //! | golden ratio | [`Tone::Drawn`] | ϕ k modulo 1 picks a band from the running sum of p: over some tens of milliseconds every band gets its share |
 //!
-//! Ours. What lies outside the device's range is played at its nearer end. It looks back only: the point of a hop is known when the hop
-//! ends, and stands for its beginning. Any split into blocks gives the same bits.
+//! Ours. What lies outside the device's range is played at its nearer end. It looks back only: the
+//! point of a hop is known when the hop ends, and stands for its beginning. Any split into blocks
+//! gives the same bits.
 
 use crate::DesignError;
 use crate::sensation::{Section, SectionState, Sensation, SensationState};
@@ -27,16 +29,16 @@ pub const BANDS_HZ: [f64; 11] = [20.0, 28.28, 40.0, 56.57, 80.0, 113.1, 160.0, 2
 const QUALITY: f64 = 2.871;
 /// Slow motion that is not felt is kept away from the bands, Hz.
 const SLOWEST_HZ: f64 = 8.0;
-/// How long the bands remember, s: two periods of the slowest that is felt well.
+/// Memory of the bands, s: two periods of the slowest that is felt well.
 const MEMORY_S: f64 = 0.04;
-/// Where low and high part, Hz; as in the balance that reductions are judged by.
+/// Border of low and high, Hz; as in the balance that reductions are judged by.
 pub const SPLIT_HZ: f64 = 100.0;
-/// What a pad's two motors turn at, Hz. **Assumed**: the class of pads with a heavy and a light weight.
+/// Rates of a pad's two motors, Hz. **Assumed**: the class of pads with a heavy and a light weight.
 pub const MOTORS_HZ: [f64; 2] = [60.0, 160.0];
 /// Least sensation that is told, of displacement 1; below it a point is silence.
 const SILENCE: f64 = 1e-12;
 
-/// How the frequency of a point is chosen.
+/// Choice of the frequency of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// The band that is felt most.
@@ -46,14 +48,14 @@ pub enum Tone {
     Drawn,
 }
 
-/// What is wanted.
+/// Specification of the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointSettings {
     /// Points a second, 1 to 1000 and at most an eighth of the sample rate.
     pub rate_hz: f64,
-    /// What the device can play, Hz, lowest and highest; 1 to 1000.
+    /// Range of the device, Hz, lowest and highest; 1 to 1000.
     pub band_hz: [f64; 2],
-    /// How the frequency is chosen.
+    /// Choice of the frequency.
     pub tone: Tone,
 }
 
@@ -65,7 +67,7 @@ pub struct PointDesign {
     sensation: Sensation,
     slowest: Section,
     bands: [Section; BANDS_HZ.len()],
-    /// What is left of the bands' energies after a hop.
+    /// Share that is left of the bands' energies after a hop.
     keep: f64,
 }
 
@@ -78,9 +80,10 @@ pub struct Point {
     pub amplitude: f64,
     /// Its frequency, Hz.
     pub frequency_hz: f64,
-    /// Peak of a sine at the heavy motor's frequency that is felt as much as everything below 100 Hz.
+    /// Peak of a sine at the heavy motor's frequency that is felt as much as everything below 100
+    /// Hz.
     pub low: f64,
-    /// The same of the light motor and everything above.
+    /// Level of the light motor and everything above.
     pub high: f64,
 }
 
@@ -103,7 +106,7 @@ struct Energies {
     count: f64,
     felt: f64,
     band: [f64; BANDS_HZ.len()],
-    /// Of each band before it was differentiated, times its frequency.
+    /// Samples of each band before it was differentiated, times its frequency.
     low: [f64; BANDS_HZ.len()],
 }
 
@@ -245,7 +248,8 @@ mod tests {
             for frequency_hz in [60.0, 75.0, 97.0, 130.0, 155.0, 190.0] {
                 let points = points(QUEST, rate_hz, sine(frequency_hz, 0.3, rate_hz));
                 assert_eq!(points.len(), 200);
-                // A hop holds half a period of what is slow, so a point by itself is off by a decibel; their mean is not.
+                // A hop holds half a period of what is slow, so a point by itself is off by a
+                // decibel; their mean is not.
                 for point in &points[50..] {
                     assert!((point.amplitude / 0.3 - 1.0).abs() < 0.15, "{rate_hz} {frequency_hz} {point:?}");
                     assert!(

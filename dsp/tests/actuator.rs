@@ -45,7 +45,8 @@ fn a_contact_begins_without_a_step() {
         let stroke: Vec<f64> = (1..3_000).map(|n| state.tick(&design, pad(n), velocity(n))).collect();
         let largest = stroke.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
         assert!(largest > 0.0);
-        // The acceleration of this stroke is there from its first sample on; its displacement is not.
+        // The acceleration of this stroke is there from its first sample on; its displacement is
+        // not.
         if quantity == Quantity::Displacement {
             assert!(stroke[0].abs() < 0.01 * largest, "{} of {largest}", stroke[0]);
         }
@@ -124,7 +125,8 @@ fn the_device_peaks_at_its_resonance_with_its_quality() {
     }
 }
 
-/// Felt amplitude over the amplitude asked for, dB re that at the resonance, for a sine of `level` · full scale.
+/// Felt amplitude over the amplitude asked for, dB re that at the resonance, for a sine of `level`
+/// · full scale.
 fn felt_db(profile: &DeviceProfile, quantity: Quantity, rate: f64, f: f64, level: f64, protect: bool) -> f64 {
     let gain = |f: f64| {
         let equaliser = Equaliser::new(profile, quantity, rate).unwrap();
@@ -370,7 +372,8 @@ fn distortion_db(frequency_hz: f64, over_db: f64, rate_hz: f64, skip_s: f64) -> 
 fn a_sine_far_over_full_scale_is_turned_down_and_not_bent() {
     for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
         let tones = [31.0, 50.0, 100.0, 440.0, 500.0, 997.0, 3_000.0, 7_351.0];
-        // With less than 8 samples a period the samples' own peaks beat: next to a third, a quarter, two fifths of the rate for long.
+        // With less than 8 samples a period the samples' own peaks beat: next to a third, a
+        // quarter, two fifths of the rate for long.
         let beating = [rate_hz / 3.0 + 1.0, 0.25 * rate_hz - 0.5, 0.25 * rate_hz + 7.0, 0.4 * rate_hz + 0.7];
         for frequency_hz in tones.into_iter().chain(beating).filter(|f| *f <= 0.45 * rate_hz) {
             for over_db in [0.5, 3.5, 9.5, 20.0, 40.0] {

@@ -1,4 +1,5 @@
-//! A force that lasts, through the ring's taps and the bank, against the convolution with the modes two samples later.
+//! A force that lasts, through the ring's taps and the bank, against the convolution with the modes
+//! two samples later.
 
 use asperity_dsp::hertz::{FORCE_HISTORY, HertzPulse, KERNEL_LATENCY, spread_force, take};
 use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups};
@@ -21,7 +22,8 @@ fn modes() -> Vec<Mode> {
     (0..10).map(mode).collect()
 }
 
-/// ∫ F(t) h(n − t) dt by the recursion of each mode in fine steps, the force a straight line over each: exact to its curvature.
+/// ∫ F(t) h(n − t) dt by the recursion of each mode in fine steps, the force a straight line over
+/// each: exact to its curvature.
 fn convolved(modes: &[Mode], force: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; COUNT];
     let step = 1.0 / FINE as f64;

@@ -1,4 +1,5 @@
-//! A rub coupled with a whole modal bank: against the plain step, the closed form, its energy, and any cut into blocks.
+//! A rub coupled with a whole modal bank: against the plain step, the closed form, its energy, and
+//! any cut into blocks.
 
 use asperity_dsp::modal_bank::{
     AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
@@ -152,8 +153,8 @@ fn the_period_in_a_bank_is_that_of_the_closed_form() {
     assert!(worst <= 0.2, "worst {worst:.3} %");
 }
 
-// A plain integrator of another hand (events by linear interpolation, fourth-order steps of 1/4000 of a period): frequency, decay, mass, force,
-// sweep, μ_s, μ_k, u_s, and the mean period, s.
+// A plain integrator of another hand (events by linear interpolation, fourth-order steps of 1/4000
+// of a period): frequency, decay, mass, force, sweep, μ_s, μ_k, u_s, and the mean period, s.
 const INTEGRATED: [[f64; 9]; 2] = [
     [300.0, 6.0, 0.06, 1.2, 0.02, 0.8, 0.3, 0.01, 0.003_387_983_994],
     [150.0, 3.0, 0.1, 1.5, 0.02, 0.7, 0.25, 0.02, 0.006_820_271_813],

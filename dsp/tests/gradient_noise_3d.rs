@@ -215,9 +215,10 @@ fn samples_of_a_path_have_the_numbers_of_single_points() {
     }
 }
 
-/// 15 ns a point and 4 ns a sample in AVX2 batches of 64 as the engine's are 52 and 14 cycles of a processor at 3.5 GHz (the
-/// example gradient_noise_speed prints all kernels). Cycles count here, because clocks differ, and twice as many, because gathers
-/// differ too and a neighbour may share the core. It has five seconds to show it.
+/// 15 ns a point and 4 ns a sample in AVX2 batches of 64 as the engine's are 52 and 14 cycles of a
+/// processor at 3.5 GHz (the example gradient_noise_speed prints all kernels). Cycles count here,
+/// because clocks differ, and twice as many, because gathers differ too and a neighbour may share
+/// the core. It has five seconds to show it.
 #[test]
 fn a_point_takes_104_cycles_at_most_and_a_sample_of_an_avx2_batch_28() {
     let (false, Some(level)) = (cfg!(debug_assertions), Level::find(Isa::Avx2)) else {

@@ -5,8 +5,8 @@ use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::rng::Rng;
 use std::f64::consts::TAU;
 
-/// numpy's eigenvalues, tests/independent/held.py 0.00015 1000 2 0.02 200000: mass of the body, kg; frequency, decay and motion of a
-/// mode; frequency and decay while a fingertip presses.
+/// numpy's eigenvalues, tests/independent/held.py 0.00015 1000 2 0.02 200000: mass of the body, kg;
+/// frequency, decay and motion of a mode; frequency and decay while a fingertip presses.
 const EIGENVALUES: &str = include_str!("independent/held_reference.csv");
 /// Modes of each body there.
 const MODES: usize = 12;

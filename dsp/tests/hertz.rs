@@ -1,4 +1,5 @@
-//! Hertz pulses against the integrated equation of motion, and the ring and the bank against the exact response.
+//! Hertz pulses against the integrated equation of motion, and the ring and the bank against the
+//! exact response.
 
 use asperity_dsp::hertz::{
     Elastic, FORCE_HISTORY, HertzContact, HertzPulse, KERNEL_LATENCY, OnsetMerge, deposit_force, pulse_shape,
@@ -15,8 +16,8 @@ use std::f64::consts::PI;
 const STEEL: Elastic = Elastic { young_pa: 200e9, poisson: 0.3 };
 const RUBBER: Elastic = Elastic { young_pa: 1e7, poisson: 0.49 };
 
-/// The elastic pulse by integrating x'' = −x^1.5 from x' = 1 (Runge–Kutta): (contact time · v / largest x,
-/// samples of the force over u in 0..1 at STEPS + 1 points with area 1).
+/// The elastic pulse by integrating x'' = −x^1.5 from x' = 1 (Runge–Kutta): (contact time · v /
+/// largest x, samples of the force over u in 0..1 at STEPS + 1 points with area 1).
 const STEPS: usize = 2_000;
 fn integrated() -> (f64, Vec<f64>) {
     let slope = |x: f64| -x.max(0.0).powf(1.5);
@@ -106,7 +107,8 @@ fn contact_time_force_and_impulse_follow_hertz() {
         assert!((ball.peak_force_n(speed) / (k * deepest.powf(1.5)) - 1.0).abs() < 1e-6);
         assert!((ball.impulse_n_s(speed) - 2.0 * ball.mass_kg() * speed).abs() < 1e-12);
     }
-    // Hand figures: 86, 54 and 34 µs at 0.01, 0.1 and 1 m/s; a rubber ball of the same size touches for milliseconds.
+    // Hand figures: 86, 54 and 34 µs at 0.01, 0.1 and 1 m/s; a rubber ball of the same size touches
+    // for milliseconds.
     assert!((ball.contact_time_s(0.1) * 1e6 - 54.0).abs() < 2.0, "{}", ball.contact_time_s(0.1));
     let soft = HertzContact::new(&RUBBER, &STEEL, 0.005, 0.000_6).unwrap().contact_time_s(1.0);
     assert!((5e-4..3e-3).contains(&soft), "{soft}");
@@ -198,7 +200,8 @@ fn impulse_onset_and_length_are_exact_to_rounding() {
     }
 }
 
-/// Largest |response − exact| / J over modes up to 10 kHz, onsets and phases, of the f64 reference mode.
+/// Largest |response − exact| / J over modes up to 10 kHz, onsets and phases, of the f64 reference
+/// mode.
 fn worst_error(rate: f64, contact_time_s: f64, force: &[f64], rng: &mut Rng) -> f64 {
     let mut worst = 0.0_f64;
     for frequency_hz in [50.0, 440.0, 1_000.0, 3_000.0, 6_000.0, 8_000.0, 10_000.0] {

@@ -165,7 +165,8 @@ fn collisions_on_a_sine_at_1_m_s_are_all_found_and_timed_to_a_microsecond() {
     }
 }
 
-/// Three waves of 6–9 samples, 2 µm high, under 0.1 N on 200 kN/m: the pad hops from crest to crest.
+/// Three waves of 6–9 samples, 2 µm high, under 0.1 N on 200 kN/m: the pad hops from crest to
+/// crest.
 fn quick_waves(at: f64) -> f64 {
     [(6.1, 0.0), (7.3, 1.0), (8.9, 2.0)]
         .iter()

@@ -131,7 +131,8 @@ fn an_unloaded_pad_rings_down_as_two_masses_on_a_spring_and_a_damper() {
             let first = count / 4;
             let stretch = |n: usize| out[n].pad_m - out[n].finger_m;
             let (a, b) = (stretch(first), stretch(first + 1));
-            // Two samples fix a damped sinusoid of known frequency and decay; all others must lie on it.
+            // Two samples fix a damped sinusoid of known frequency and decay; all others must lie
+            // on it.
             let (h, damp) = (1.0 / rate_hz, (-decay / rate_hz).exp());
             let sine = (b / damp - a * (omega * h).cos()) / (omega * h).sin();
             for n in first..count {

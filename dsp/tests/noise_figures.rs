@@ -82,8 +82,8 @@ fn line(values: &[f64], spacing: f64) -> (f64, f64) {
     (slope / spacing, worst)
 }
 
-// Bar of the project: ±0.1 dB per octave of −3.01 α over 2.5 decades (here 12.5 Hz – 4 kHz at 0.1 m/s).
-// The levels come from dsp/tests/independent/noise_spectrum.py.
+// Bar of the project: ±0.1 dB per octave of −3.01 α over 2.5 decades (here 12.5 Hz – 4 kHz at 0.1
+// m/s). The levels come from dsp/tests/independent/noise_spectrum.py.
 #[test]
 fn the_spectrum_falls_by_3_db_alpha_per_octave_over_two_and_a_half_decades() {
     let figures = [
@@ -94,7 +94,8 @@ fn the_spectrum_falls_by_3_db_alpha_per_octave_over_two_and_a_half_decades() {
     ];
     for (roughness, alpha, levels_db) in figures {
         let power = mean_power(roughness, 0.1, 1 << 16, 64);
-        // A third-octave band widens with frequency: 1/f^α falls by 3.01 (α − 1) dB per octave there.
+        // A third-octave band widens with frequency: 1/f^α falls by 3.01 (α − 1) dB per octave
+        // there.
         let bands: Vec<f64> =
             (0..26).map(|i| third_octave_db(&power, 12.5 * 2f64.powf(f64::from(i) / 3.0))).collect();
         let (slope, worst) = line(&bands, 1.0 / 3.0);
@@ -109,7 +110,8 @@ fn the_spectrum_falls_by_3_db_alpha_per_octave_over_two_and_a_half_decades() {
     }
 }
 
-/// Wavelengths near the sample period are faded out, so at 22.05 kHz the two and a half decades end at 2 kHz.
+/// Wavelengths near the sample period are faded out, so at 22.05 kHz the two and a half decades end
+/// at 2 kHz.
 #[test]
 fn the_slope_holds_at_every_sample_rate() {
     for (rate_hz, len, lowest_hz) in [
@@ -187,7 +189,8 @@ fn the_same_place_has_the_same_height_out_and_back() {
         let back: Vec<[f64; 2]> = out.iter().rev().copied().collect();
         let (there, here) = (relief(&noise, &out, step, 0.3), relief(&noise, &back, step, 0.3));
         assert!(there.iter().eq(here.iter().rev()), "bits differ {origin} m away");
-        // … and a place that is the same but for rounding is as high but for rounding, at 2 µm of relief.
+        // … and a place that is the same but for rounding is as high but for rounding, at 2 µm of
+        // relief.
         let near: Vec<[f64; 2]> = out.iter().map(|p| [p[0] + 1e-12, p[1] - 1e-12]).collect();
         let worst = there
             .iter()

@@ -49,7 +49,8 @@ fn db(ratio: f64) -> f64 {
     10.0 * ratio.log10()
 }
 
-/// Σ over l of what a sphere with normal velocity P_l(cos θ) radiates, written out for l = 0…4 with explicit h_l'.
+/// Σ over l of what a sphere with normal velocity P_l(cos θ) radiates, written out for l = 0…4 with
+/// explicit h_l'.
 fn exact_sigma(l: usize, x: f64) -> f64 {
     // |x h_l'|² as polynomials in 1/x, from h_l = e^{ix} × rational function.
     let (s, c) = x.sin_cos();
@@ -121,7 +122,8 @@ fn orders_agree_with_their_limits() {
     assert_eq!((efficiency(3, 0.0), efficiency(3, f64::NAN), efficiency(8, 1e-30)), (0.0, 0.0, 0.0));
 }
 
-/// Motion along the normal of a box's top and bottom, by the names of tests/independent/radiation.py.
+/// Motion along the normal of a box's top and bottom, by the names of
+/// tests/independent/radiation.py.
 fn pattern(name: &str, q: Vec3, top: bool) -> f64 {
     let side = if top { 1.0 } else { -1.0 };
     match name {
@@ -155,7 +157,8 @@ fn boxes_and_opposed_pistons_radiate_as_boundary_elements_say() {
         let (points_m, triangles) = cuboid(size, cells);
         let surface = Surface { points_m: &points_m, triangles: &triangles };
         let sphere = EquivalentSphere::of(&surface).unwrap();
-        // Points of two faces have the same place; those of the top and bottom are the last two grids.
+        // Points of two faces have the same place; those of the top and bottom are the last two
+        // grids.
         let grid = (cells[0] + 1) * (cells[1] + 1);
         let lid = points_m.len() - 2 * grid;
         let motion = |i: usize| {
@@ -200,7 +203,8 @@ fn no_body_radiates_more_energy_than_the_strike_gave() {
         let multipoles = sphere.multipoles(&surface, motion);
         let hz = 50.0 * 300.0_f64.powf(rng.uniform());
         let (gain, loss) = (sphere.pressure_pa_s_m(&multipoles, hz), sphere.loss_per_s(&multipoles, hz));
-        // A mode at q' = 1 holds ½ J and decays by `loss` alone: what passes through a sphere of 1 m.
+        // A mode at q' = 1 holds ½ J and decays by `loss` alone: what passes through a sphere of 1
+        // m.
         let radiated_j = 4.0 * PI * 0.5 * gain * gain / (AIR_KG_M3 * SOUND_M_S) / (2.0 * loss);
         assert!(radiated_j <= 0.5 * (1.0 + 1e-9), "{radiated_j}");
         // No order is louder than all of the surface breathing would be.

@@ -1,7 +1,7 @@
 //! Bits of the kernels on every processor: what this machine renders is what any other does.
 //!
-//! The figures are of x86-64; `.ci/run` renders them again on 64-bit ARM and in WebAssembly. A change of a kernel's arithmetic changes
-//! them, and the new ones stand in the message.
+//! The figures are of x86-64; `.ci/run` renders them again on 64-bit ARM and in WebAssembly. A
+//! change of a kernel's arithmetic changes them, and the new ones stand in the message.
 
 use asperity_dsp::butterworth::{Butterworth, State};
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
@@ -112,7 +112,8 @@ fn path_filter() -> u64 {
     Bits::of((0..4096).map(|_| state.tick(&filter, rng.normal()).low))
 }
 
-/// Name, what renders it, its bits where products and sums round apart, and its bits where they are fused.
+/// Name, what renders it, its bits where products and sums round apart, and its bits where they are
+/// fused.
 type Figure = (&'static str, fn(Level) -> u64, u64, u64);
 
 const FIGURES: [Figure; 7] = [

@@ -150,8 +150,8 @@ fn what_rings_under_a_resting_hand_never_grows_whatever_presses() {
     assert!(most <= 1.001, "{most}");
 }
 
-// scipy.integrate.solve_ivp with events, tests/independent/stick_slip.py: frequency, decay, mass, normal force, sweep, μ_s, μ_k, u_s,
-// and the mean period, s.
+// scipy.integrate.solve_ivp with events, tests/independent/stick_slip.py: frequency, decay, mass,
+// normal force, sweep, μ_s, μ_k, u_s, and the mean period, s.
 const INTEGRATED: [[f64; 9]; 4] = [
     [110.0, 4.0, 0.2, 2.0, 0.004, 0.8, 0.3, 0.002, 0.011_595_540_41],
     [220.0, 20.0, 0.05, 1.0, 0.01, 0.6, 0.2, 0.005, 0.004_743_987_452],
@@ -182,7 +182,8 @@ fn it_agrees_with_an_integrator_of_another_making_where_the_curve_is_smooth() {
             let mean = f64::from(begun[begun.len() - 1] - begun[0]) / (begun.len() - 1) as f64 / rate_hz;
             let error = 100.0 * (mean / exact - 1.0);
             println!("{frequency_hz} Hz at {rate_hz} Hz: {error:+.3} %");
-            // How fast slipping grows out of sticking on a steep curve is right to the first order of the step.
+            // How fast slipping grows out of sticking on a steep curve is right to the first order
+            // of the step.
             assert!(error.abs() <= bound, "{frequency_hz} Hz: {error:+.3} %");
         }
     }

@@ -1,4 +1,5 @@
-//! A strike through ring, bank and first samples against the equation: the integrated Hertz force convolved with the modes.
+//! A strike through ring, bank and first samples against the equation: the integrated Hertz force
+//! convolved with the modes.
 
 use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
 use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, design_groups};

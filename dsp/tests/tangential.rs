@@ -123,7 +123,8 @@ fn whatever_the_force_the_skin_stores_no_more_than_friction_gave() {
         for _ in 0..400 {
             state.tick(&start, rng.normal());
         }
-        // Three samples until the parabola has forgotten, then free: energy only falls, also when the stiffness falls.
+        // Three samples until the parabola has forgotten, then free: energy only falls, also when
+        // the stiffness falls.
         let energy = |state: &TangentialState, u: f64, design: &Tangential| {
             0.5 * mass_kg * state.velocity_m_s().powi(2) + 0.5 * design.stiffness_n_m() * u * u
         };

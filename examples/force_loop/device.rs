@@ -1,4 +1,5 @@
-//! A force-feedback device in a loop: a mass with damping in a hand, a sampled law, and the energy that the loop gives and takes.
+//! A force-feedback device in a loop: a mass with damping in a hand, a sampled law, and the energy
+//! that the loop gives and takes.
 //!
 //! ```text
 //! m ẍ = F_hand − b ẋ + F(x_k)        x: upwards; F is held from tick to tick
@@ -58,8 +59,8 @@ impl Device {
         ticks
     }
 
-    /// Energy that the loop gives in a cycle of a hand that moves the tip up and down by `swing_m` about `depth_m`, less what the
-    /// device's damping takes in it, J.
+    /// Energy that the loop gives in a cycle of a hand that moves the tip up and down by `swing_m`
+    /// about `depth_m`, less what the device's damping takes in it, J.
     pub fn cycle_j(&self, depth_m: f64, swing_m: f64, hz: f64, force_n: impl Fn(f64) -> f64) -> f64 {
         let ticks = (self.rate_hz / hz).round();
         let place = |tick: f64| -depth_m + swing_m * (std::f64::consts::TAU * tick / ticks).sin();
@@ -69,12 +70,14 @@ impl Device {
         given_j - std::f64::consts::PI * self.damping_n_s_m * turn * swing_m * swing_m
     }
 
-    /// Time in which a swing against a spring falls to 1/e, s: a force that is held for a tick comes half a tick late, which takes k T/2 of the damping.
+    /// Time in which a swing against a spring falls to 1/e, s: a force that is held for a tick
+    /// comes half a tick late, which takes k T/2 of the damping.
     pub fn fall_s(&self, stiffness_n_m: f64) -> f64 {
         2.0 * self.mass_kg / (self.damping_n_s_m - 0.5 * stiffness_n_m / self.rate_hz)
     }
 
-    /// Whether it holds still in the end: its swing in the last quarter is no larger than some steps of its sensor.
+    /// Whether it holds still in the end: its swing in the last quarter is no larger than some
+    /// steps of its sensor.
     pub fn holds(&self, ticks: &[Tick]) -> bool {
         let last = &ticks[ticks.len() * 3 / 4..];
         let low = last.iter().fold(f64::INFINITY, |low, tick| low.min(tick.depth_m));

@@ -1,13 +1,15 @@
-//! A force-feedback device on sand, on a shell in the sand, on a wall and on a soft cloth: a loop of 1, 2 and 5 kHz holds it still, and gives
-//! no more energy than it takes.
+//! A force-feedback device on sand, on a shell in the sand, on a wall and on a soft cloth: a loop
+//! of 1, 2 and 5 kHz holds it still, and gives no more energy than it takes.
 //!
 //! ```sh
 //! cargo run --release --example force_loop [FOLDER]     # default force_loop/
 //! ```
 //!
-//! The thread that drives a device asks [`Scene::tip_law`] once, and from then on turns the depth of its tip into a force without waiting
-//! for anything; the same depths go to the engine as reports, which makes what is felt of the grains, what is heard, and moves the sand.
-//! Writes sand.svg, shell.svg, wall.svg, cloth.svg, prints and draws how stiff a loop may be (stiffest.svg), and what else stands behind a force:
+//! The thread that drives a device asks [`Scene::tip_law`] once, and from then on turns the depth
+//! of its tip into a force without waiting for anything; the same depths go to the engine as
+//! reports, which makes what is felt of the grains, what is heard, and moves the sand. Writes
+//! sand.svg, shell.svg, wall.svg, cloth.svg, prints and draws how stiff a loop may be
+//! (stiffest.svg), and what else stands behind a force:
 //!
 //! | picture | what |
 //! |---|---|
@@ -50,10 +52,11 @@ fn device(rate_hz: f64, mass_kg: f64) -> Device {
     Device { mass_kg, damping_n_s_m: DAMPING_N_S_M, rate_hz, resolution_m: RESOLUTION_M }
 }
 
-/// How long the hand keeps still, s: against a wall of 1500 N/m a loop of 1 kHz leaves 1.25 of the device's 2 N·s/m, in which half a kilogram's
-/// swing falls to a third in 0.8 s.
+/// How long the hand keeps still, s: against a wall of 1500 N/m a loop of 1 kHz leaves 1.25 of the
+/// device's 2 N·s/m, in which half a kilogram's swing falls to a third in 0.8 s.
 const STILL_S: f64 = 8.0;
-/// A flat shell under the tip, half as hard again as the sand: three times as hard is more than a loop of 1 kHz holds with half a kilogram.
+/// A flat shell under the tip, half as hard again as the sand: three times as hard is more than a
+/// loop of 1 kHz holds with half a kilogram.
 const SHELL: Buried =
     Buried { at_m: [0.5 * SIDE_M; 2], top_m: 0.001, half_m: [0.01; 2], height_m: 0.001, hardness: 1.5 };
 
@@ -84,7 +87,8 @@ fn carried_n(law: &TipLaw, depth_m: f64) -> f64 {
     law.answer_at_n([0.5 * SIDE_M; 2], depth_m, [0.0; 2])[2]
 }
 
-/// The loop and the engine side by side: the loop's ticks, and the engine's rows of the same contact.
+/// The loop and the engine side by side: the loop's ticks, and the engine's rows of the same
+/// contact.
 fn run(
     scene: &mut Scene,
     renderer: &mut asperity::Renderer,

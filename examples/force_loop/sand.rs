@@ -1,4 +1,5 @@
-//! Sand: its force and drag through the whole engine against the document's equations, a landing, and the furrow of a fast finger.
+//! Sand: its force and drag through the whole engine against the document's equations, a landing,
+//! and the furrow of a fast finger.
 
 use crate::picture::{Curve, svg};
 use asperity::live::ports::{Force, ForceRow, Of};

@@ -1,4 +1,5 @@
-//! What a ball feels of a soft map against the closed form, and how much of moving sand has to be drawn.
+//! What a ball feels of a soft map against the closed form, and how much of moving sand has to be
+//! drawn.
 
 use crate::picture::{Curve, svg};
 use asperity::texture::footprint::{footprint_radius_m, sample_under};

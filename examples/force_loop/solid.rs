@@ -72,7 +72,8 @@ fn rows(port: &mut ForcePort) -> impl Iterator<Item = ForceRow> {
 
 type Points = Vec<[f64; 2]>;
 
-/// The rows of a stroke along u, the law at where it was, and how far they are apart, over the law's rms.
+/// The rows of a stroke along u, the law at where it was, and how far they are apart, over the
+/// law's rms.
 fn rows_and_law(material: SolidMaterial) -> Result<(Points, Points, f64), Failed> {
     let noise = solid(material)?;
     let surface =
@@ -119,7 +120,8 @@ fn height_m(surface: Surface, sample: ContactSample) -> Result<f64, Failed> {
     Ok(last.0)
 }
 
-/// A cube's face z = 0 and its face y = 0, which meet at the edge along x, and a sphere of 4 cm about its corner: along the circle where it cuts both.
+/// A cube's face z = 0 and its face y = 0, which meet at the edge along x, and a sphere of 4 cm
+/// about its corner: along the circle where it cuts both.
 fn one_block(folder: &Path) -> Result<(), Failed> {
     let faces = [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]];
     let (mut cube, mut sphere, mut worst_m) = (Vec::new(), Vec::new(), 0.0_f64);
@@ -150,7 +152,8 @@ fn one_block(folder: &Path) -> Result<(), Failed> {
     Ok(())
 }
 
-/// One reader takes all, one looks after every report, one stalls for a second and finds the newest tenth.
+/// One reader takes all, one looks after every report, one stalls for a second and finds the newest
+/// tenth.
 fn readers(folder: &Path) -> Result<(), Failed> {
     let surface = Surface::new(solid(SolidMaterial::Gravel)?, SIDE_M, SIDE_M)?.wraps(false);
     let sample = |t: f64| ContactSample::new([(0.02 + 0.07 * t) / SIDE_M, 0.5], 0.5).sliding([0.07, 0.0]);

@@ -4,7 +4,8 @@
 //! cargo run --release --example real_input -- CORPUS FOLDER
 //! for scene in FOLDER/*.toml; do asperity render $scene -o ${scene%.toml} --plot; done
 //! ```
-//! `CORPUS` holds `haptics/`, `textures/` and `modal/`. Scenes name its maps by path; nothing is copied.
+//! `CORPUS` holds `haptics/`, `textures/` and `modal/`. Scenes name its maps by path; nothing is
+//! copied.
 
 mod modal_tables;
 mod profile;

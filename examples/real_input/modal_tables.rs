@@ -44,7 +44,8 @@ fn mode(frequency_hz: f64, decay_per_s: f64, amplitude: f64) -> Mode {
 pub fn fitted(name: &str, text: &str) -> Result<(String, ModalModel), String> {
     let table: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let (cf, op, rt) = (needed(&table, "cf")?, needed(&table, "op")?, needed(&table, "rt")?);
-    // Published levels lie near −50 dB; only their differences mean something. The loudest becomes 0.1.
+    // Published levels lie near −50 dB; only their differences mean something. The loudest becomes
+    // 0.1.
     let loudest = op.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let modes = cf.iter().zip(&op).zip(&rt);
     let modes = modes
@@ -53,9 +54,9 @@ pub fn fitted(name: &str, text: &str) -> Result<(String, ModalModel), String> {
     model(name, modes)
 }
 
-/// Bodies with lists `freq_hz`, `gain`, `t60_s`, or bars and bells with `gains` per place of the strike
-/// and frequencies or ratios; bare ratios ring at [`FUNDAMENTAL_HZ`] for [`DECAY_TIME_S`]. Zeros that
-/// hold a place in a list are left out.
+/// Bodies with lists `freq_hz`, `gain`, `t60_s`, or bars and bells with `gains` per place of the
+/// strike and frequencies or ratios; bare ratios ring at [`FUNDAMENTAL_HZ`] for [`DECAY_TIME_S`].
+/// Zeros that hold a place in a list are left out.
 pub fn bodies(text: &str) -> Result<Vec<(String, ModalModel)>, String> {
     let tables: Vec<Value> = serde_json::from_str(text).map_err(|error| error.to_string())?;
     tables.iter().map(body).collect()

@@ -1,4 +1,5 @@
-//! Scenes of the strokes: published maps with the sizes they are taken to have, and the bodies below them.
+//! Scenes of the strokes: published maps with the sizes they are taken to have, and the bodies
+//! below them.
 
 use std::path::Path;
 

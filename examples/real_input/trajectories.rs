@@ -5,9 +5,11 @@
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Striker};
 
-/// Full pressure of a pen, N. Assumed: tablets saturate at 3–5 N, recordings of writing peak near half.
+/// Full pressure of a pen, N. Assumed: tablets saturate at 3–5 N, recordings of writing peak near
+/// half.
 pub const FULL_PRESSURE_N: f64 = 2.0;
-/// Size of a canvas pixel of the painting session, m. Assumed: a canvas of 800 px on a small tablet.
+/// Size of a canvas pixel of the painting session, m. Assumed: a canvas of 800 px on a small
+/// tablet.
 pub const PIXEL_M: f64 = 0.15e-3;
 /// How fast a pen lands, m/s. Assumed: the recordings hold no height above the paper.
 pub const LANDING_M_S: f64 = 0.02;
@@ -122,8 +124,8 @@ const GRAVITY_M_S2: f64 = 9.81;
 /// Smaller changes of speed between two samples are noise of the tracker, m/s.
 const LEAST_CHANGE_M_S: f64 = 0.25;
 
-/// Tosses of a cube (`toss,t_s,x_m,…,vx_mps,vy_mps,vz_mps,…`) as impacts on `body`, one toss after the
-/// other. An impact is where the cube gains upward speed that gravity cannot give; its impulse
+/// Tosses of a cube (`toss,t_s,x_m,…,vx_mps,vy_mps,vz_mps,…`) as impacts on `body`, one toss after
+/// the other. An impact is where the cube gains upward speed that gravity cannot give; its impulse
 /// m Δv = m v (1 + e) says how fast the cube struck.
 pub fn tosses(csv: &str, body: &str) -> Result<ContactLog, String> {
     let mut lines = Vec::new();

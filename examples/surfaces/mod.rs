@@ -1,4 +1,5 @@
-//! Support of the surface examples: a hand that draws lines, the forces it feels and their plot, pictures.
+//! Support of the surface examples: a hand that draws lines, the forces it feels and their plot,
+//! pictures.
 #![allow(dead_code)]
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
@@ -160,7 +161,8 @@ pub fn plot(panels: &[(&str, Vec<[f64; 3]>)], path: &Path) -> std::io::Result<()
     std::fs::write(path, svg)
 }
 
-/// Heights (m) on a square of `side` points `spacing_m` apart, lit from the top left: grey, 0 to 255.
+/// Heights (m) on a square of `side` points `spacing_m` apart, lit from the top left: grey, 0 to
+/// 255.
 pub fn lit(side: usize, spacing_m: f64, height_m: impl Fn(usize, usize) -> f64) -> Vec<u8> {
     let mut grey = Vec::with_capacity(side * side);
     for y in 0..side {

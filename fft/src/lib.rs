@@ -1,7 +1,8 @@
 //! Planned Fourier transforms of `f64`, compiled once.
 //!
-//! `rustfft`'s planner is generic: every crate and every test program that calls it compiles all of its algorithms for itself, ten
-//! seconds each. The planner here is not, so that they are compiled in this crate and linked elsewhere.
+//! `rustfft`'s planner is generic: every crate and every test program that calls it compiles all of
+//! its algorithms for itself, ten seconds each. The planner here is not, so that they are compiled
+//! in this crate and linked elsewhere.
 
 pub use rustfft::{Fft, num_complex};
 

@@ -1,7 +1,8 @@
 //! Fits of noise of any colour: `colours DRAWS SEED SECONDS [RATE_HZ] [BITS] [COLOUR…] [-s] [-v]`
 //!
-//! Every colour of `asperity_measure::coloured_noise`, in which nothing rings; with `-s`, four modes struck a quarter of a second
-//! after the start, 20 dB louder; with `-v` the modes that were invented.
+//! Every colour of `asperity_measure::coloured_noise`, in which nothing rings; with `-s`, four
+//! modes struck a quarter of a second after the start, 20 dB louder; with `-v` the modes that were
+//! invented.
 
 use asperity_dsp::mode::Mode;
 use asperity_fit::{Fit, FitOptions, FittedMode, Recording, Warning, fit};

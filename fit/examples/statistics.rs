@@ -1,7 +1,7 @@
 //! The statistics that a test suite has no time for, in full: `statistics`
 //!
-//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 40 draws of every colour of noise, 30 s and 10
-//! minutes of audio, and the most memory the process ever held.
+//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 40 draws of every colour of noise, 30 s and
+//! 10 minutes of audio, and the most memory the process ever held.
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -36,7 +36,8 @@ fn main() {
     println!("most memory held so far: {:.0} MiB", peak_mib());
 }
 
-/// In how many draws both modes of a pair were found, within a fifth of their distance, and nothing else.
+/// In how many draws both modes of a pair were found, within a fifth of their distance, and nothing
+/// else.
 fn pairs(draws: u32, seed: u64) -> usize {
     let mut rng = Rng::new(seed);
     let decay_per_s = 3.0 * std::f64::consts::LN_10 / 2.0;

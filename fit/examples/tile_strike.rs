@@ -1,8 +1,8 @@
 //! Makes `cli/assets/tile_strike.wav`, the recording that `asperity demo` fits: not a recording of
-//! anything, but made by this project to have what recordings have. A ceramic-tile-like body (24 modes,
-//! damping d = 9 + 3.2e-8 ω², two pairs a few hertz apart) is struck by 0.7 ms of half-sine force after
-//! 120 ms of pre-roll; a room (decaying noise, T60 0.35 s, 34 dB down) answers, and microphone noise
-//! lies 62 dB under the peak. 44.1 kHz, 16 bit, mono, 1.8 s.
+//! anything, but made by this project to have what recordings have. A ceramic-tile-like body (24
+//! modes, damping d = 9 + 3.2e-8 ω², two pairs a few hertz apart) is struck by 0.7 ms of half-sine
+//! force after 120 ms of pre-roll; a room (decaying noise, T60 0.35 s, 34 dB down) answers, and
+//! microphone noise lies 62 dB under the peak. 44.1 kHz, 16 bit, mono, 1.8 s.
 //!
 //! `cargo run --release -p asperity-fit --example tile_strike -- cli/assets/tile_strike.wav`
 
@@ -71,7 +71,8 @@ fn strike(rng: &mut Rng, count: usize) -> Vec<f64> {
     out
 }
 
-/// Sparse late echoes of what is struck: noise that decays, convolved coarsely with the strike's energy.
+/// Sparse late echoes of what is struck: noise that decays, convolved coarsely with the strike's
+/// energy.
 fn room(dry: &[f64], rng: &mut Rng) -> Vec<f64> {
     let mut out = vec![0.0; dry.len()];
     for _ in 0..220 {

@@ -3,7 +3,8 @@
 //! ```text
 //! y(t) = Σ amplitude · e^(−decay_per_s t) · sin(2π frequency_hz t + phase_rad)      t from the onset
 //! ```
-//! The whole way is [`fit`] (`strike`); its rooms, in the order in which each may use those above it:
+//! The whole way is [`fit`] (`strike`); its rooms, in the order in which each may use those above
+//! it:
 //!
 //! | room | from → to |
 //! |---|---|
@@ -16,8 +17,8 @@
 //! | [`body`] | partials → what the engine will play, and what that leaves of the recording |
 //! | [`after`] | modes → other sizes and materials, several strikes of one body, tables |
 //!
-//! On real recordings: `cargo run --release -p asperity-fit --example recordings` (60 modes against as many peaks of a
-//! short-time spectrum) and `--example struck` (as the engine plays them).
+//! On real recordings: `cargo run --release -p asperity-fit --example recordings` (60 modes against
+//! as many peaks of a short-time spectrum) and `--example struck` (as the engine plays them).
 
 pub mod after;
 pub mod body;

@@ -3,14 +3,15 @@
 /// Largest amplitude of a mode, in peaks of the recording.
 pub(crate) const LARGEST_AMPLITUDE: f64 = 8.0;
 
-/// What a fit may find and how.
+/// Options of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// Most modes.
     pub max_modes: usize,
     /// Lowest and highest frequency, Hz; the upper one is also bounded by 0.49 of the rate.
     pub band_hz: (f64, f64),
-    /// Modes whose energy lies further than this below the strongest one's are dropped, dB (negative).
+    /// Modes whose energy lies further than this below the strongest one's are dropped, dB
+    /// (negative).
     pub least_level_db: f64,
     /// Fastest decay, 1/s.
     pub fastest_decay_per_s: f64,

@@ -1,7 +1,8 @@
 //! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
-//! mean removed → the best strike chosen ([`crate::recording::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
-//! and doubts named ([`crate::proof::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::body::fitted`]).
+//! mean removed → the best strike chosen ([`crate::recording::onset`]) → analysed from its onset on
+//! (`ways`) → what does not ring taken out and doubts named ([`crate::proof::suspicion`]) → held
+//! against the recording as the engine will play it ([`mod@crate::body::fitted`]).
 
 use crate::body::fitted::{Fit, Warning};
 use crate::options::{FitOptions, Found};
@@ -12,7 +13,8 @@ use crate::ways::Sound;
 
 /// Sound shorter than this is warned of, s.
 const SHORT_S: f64 = 0.05;
-/// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
+/// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their
+/// noise.
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
 /// Why a recording cannot be fitted.
@@ -26,7 +28,7 @@ pub enum FitError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What would be right.
+        /// Remedy.
         right: &'static str,
     },
     /// A strike that is not there.
@@ -36,7 +38,7 @@ pub enum FitError {
         name: String,
         /// The number asked for.
         wanted: usize,
-        /// Where those are that were found, s of the file.
+        /// Times of those that were found, s of the file.
         strikes_s: Vec<f64>,
     },
     /// Nothing is left to analyse.
@@ -44,7 +46,7 @@ pub enum FitError {
     NothingAfterOnset {
         /// The recording.
         name: String,
-        /// How many follow.
+        /// Number that follow.
         samples: usize,
     },
 }
@@ -141,7 +143,7 @@ fn without_mean(samples: &[f64], warnings: &mut Vec<Warning>) -> Vec<f64> {
     samples.iter().map(|x| x - mean).collect()
 }
 
-/// Where the sound has gone down in the noise for good, and a little after.
+/// End, where the sound has gone down in the noise for good, and a little after.
 fn trimmed_end(samples: &[f64], onset: usize, end: usize, rate: f64) -> usize {
     let end = end.min(onset + (LONGEST_S * rate) as usize);
     if ((end - onset) as f64) < UNTRIMMED_S * rate {
@@ -188,7 +190,7 @@ fn warn_of_recording(recording: &Recording, strike: &Strike, found: &Found, warn
     }
 }
 
-/// Where the user says that it rings freely, or where the clipping ends; `None` finds out.
+/// Beginning of free ringing as the user says, or the end of the clipping; `None` finds out.
 fn fixed_offset(recording: &Recording, found: &Found, options: &FitOptions) -> Option<usize> {
     let told = options.start_offset_s.map(|offset| (offset * recording.sample_rate_hz).round() as usize);
     let offset = told.or_else(|| clipped_offset(recording, found))?;

@@ -1,5 +1,5 @@
-//! Inputs that break naive fits: each gives a result with warnings or one typed error, quickly; never a
-//! panic, a growing mode, or giants that cancel.
+//! Inputs that break naive fits: each gives a result with warnings or one typed error, quickly;
+//! never a panic, a growing mode, or giants that cancel.
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;

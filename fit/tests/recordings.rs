@@ -1,5 +1,5 @@
-//! Real recordings of the corpus: better than spectral peaks, the same frequencies at every velocity,
-//! one exponential for one mode, and Hertz' contact time in an impact's pulse.
+//! Real recordings of the corpus: better than spectral peaks, the same frequencies at every
+//! velocity, one exponential for one mode, and Hertz' contact time in an impact's pulse.
 
 use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_dsp::mode::Mode;
@@ -52,8 +52,9 @@ fn the_decay_of_a_vibraphone_bar_is_one_exponential() {
     // T60 2.05 s by the slope of its level; 2.0–2.3 s by least squares, by where one starts.
     let t60_s = strongest.mode().t60_s();
     assert!((1.9..2.4).contains(&t60_s), "{t60_s}");
-    // What lies within its bandwidth would split it; the attack's own falls many times as fast. (The bar beats a little: 1.5 Hz
-    // away a second mode of the same decay, 18 dB down, is worth more than the 16 dB that a resonance may lose.)
+    // What lies within its bandwidth would split it; the attack's own falls many times as fast.
+    // (The bar beats a little: 1.5 Hz away a second mode of the same decay, 18 dB down, is worth
+    // more than the 16 dB that a resonance may lose.)
     let half_width_hz = strongest.decay_per_s / (2.0 * std::f64::consts::PI);
     for other in &fit.modes[1..] {
         let near = (other.frequency_hz - strongest.frequency_hz).abs() < 3.0 * half_width_hz;
@@ -64,8 +65,8 @@ fn the_decay_of_a_vibraphone_bar_is_one_exponential() {
 
 #[test]
 fn what_the_engine_plays_is_no_louder_than_the_recording_and_what_is_told_of_it_is_true() {
-    // A contact of 5 ms was believed in that was not there, and the modes continued backwards by as much: the engine
-    // played a bang 11.7 dB over the recording's peak, which the residual hid.
+    // A contact of 5 ms was believed in that was not there, and the modes continued backwards by as
+    // much: the engine played a bang 11.7 dB over the recording's peak, which the residual hid.
     for name in ["vcsl_xylo_medium_C5_ff.wav", "vibraphone_1255.513.wav"] {
         let Some((recording, fit)) = fitted(name, 150) else { return };
         assert!(fit.struck_peak_db < 3.0 && fit.start_offset_s == 0.0, "{name}: {} dB", fit.struck_peak_db);
@@ -112,9 +113,9 @@ fn velocity_layers_of_one_object_agree_in_frequency() {
             assert!((a.decay_per_s / b.decay_per_s - 1.0).abs() < 0.2, "{a:?} {b:?}");
         }
     }
-    // The third blow fell elsewhere: 1507, 3281 and 7778 Hz of the first two are not in
-    // its spectrum at all. What rings in the first two is the same in frequency *and* in decay, so that no chance
-    // neighbour counts.
+    // The third blow fell elsewhere: 1507, 3281 and 7778 Hz of the first two are not in its
+    // spectrum at all. What rings in the first two is the same in frequency *and* in decay, so that
+    // no chance neighbour counts.
     let common = bells[0].modes.iter().filter(|m| {
         let other = nearest(&bells[1], m.frequency_hz);
         let decays = other.decay_per_s / m.decay_per_s;

@@ -1,5 +1,5 @@
-//! Sound files as recorders, editors and libraries write them, made here byte by byte: the same sound comes out of all,
-//! and what cannot be read is named in one line.
+//! Sound files as recorders, editors and libraries write them, made here byte by byte: the same
+//! sound comes out of all, and what cannot be read is named in one line.
 
 use asperity_fit::{ChannelChoice, Recording, RecordingError, load};
 use std::path::PathBuf;

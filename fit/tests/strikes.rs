@@ -1,7 +1,9 @@
-//! Which strike of a recording is fitted: the one that is loud and rings alone for longest, on made and on real bodies.
+//! Which strike of a recording is fitted: the one that is loud and rings alone for longest, on made
+//! and on real bodies.
 //!
-//! Every case lays strikes of one body over each other, so that which one a listener would cut out is known: a loud one
-//! after soft ones or after noise, the last of a roll, the one before soft bounces.
+//! Every case lays strikes of one body over each other, so that which one a listener would cut out
+//! is known: a loud one after soft ones or after noise, the last of a roll, the one before soft
+//! bounces.
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;

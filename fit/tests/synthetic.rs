@@ -1,5 +1,6 @@
-//! Made impacts: what is found, how near to the Cramér–Rao bound, and what noise alone gives.
-//! The whole table is `cargo run --release --example table`; these are its cells that fit into a minute.
+//! Made impacts: what is found, how near to the Cramér–Rao bound, and what noise alone gives. The
+//! whole table is `cargo run --release --example table`; these are its cells that fit into a
+//! minute.
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -49,9 +50,10 @@ fn modes_are_found_at_the_bound_and_nothing_else() {
 
 #[test]
 fn a_hundred_modes_struck_at_once_are_neither_too_many_nor_a_push() {
-    // As a user fits them: told nothing. Candidates by the hundred once passed for a recording that is no sum of modes,
-    // and more modes than the search for the contact can predict for one that is pushed for 5 ms. What the noise
-    // allows to be told was dropped 80 dB below the strongest mode's energy.
+    // As a user fits them: told nothing. Candidates by the hundred once passed for a recording that
+    // is no sum of modes, and more modes than the search for the contact can predict for one that
+    // is pushed for 5 ms. What the noise allows to be told was dropped 80 dB below the strongest
+    // mode's energy.
     let made = impact(100, 60.0, 12, 44_100.0, 2.0);
     let mut rng = Rng::new(1);
     let mut samples: Vec<f64> = (0..8820).map(|_| made.noise_std * rng.normal()).collect();
@@ -248,7 +250,8 @@ fn the_bound_is_the_one_numpy_computes() {
     }
 }
 
-/// Two seconds of a body of `count` modes under a half-sine of force that lasts `push_s`, noise 60 dB under it; the decays.
+/// Two seconds of a body of `count` modes under a half-sine of force that lasts `push_s`, noise 60
+/// dB under it; the decays.
 fn pushed(count: usize, push_s: f64, seed: u64) -> (Vec<f64>, Vec<Mode>) {
     const RATE_HZ: f64 = 44_100.0;
     let mut rng = Rng::new(seed);
@@ -282,7 +285,8 @@ fn pushed(count: usize, push_s: f64, seed: u64) -> (Vec<f64>, Vec<Mode>) {
 
 #[test]
 fn the_end_of_a_push_is_found_and_the_modes_after_it_are_right() {
-    // Pushes once passed for a crowd of modes as fast as any may be, or for no sum of modes at all: 23 of 48 were found.
+    // Pushes once passed for a crowd of modes as fast as any may be, or for no sum of modes at all:
+    // 23 of 48 were found.
     for (count, push_s, seed) in [(8, 3e-4, 31), (24, 2e-3, 33)] {
         let (samples, modes) = pushed(count, push_s, seed);
         let recording = Recording::from_samples("pushed", samples, 44_100.0).unwrap();

@@ -1,7 +1,7 @@
 //! Stationary noise of any colour: nothing rings in it.
 //!
-//! White noise is shaped in the frequency domain over twice the length asked for, and a part from its middle
-//! is cut out: its ends do not meet, as those of a recording do not.
+//! White noise is shaped in the frequency domain over twice the length asked for, and a part from
+//! its middle is cut out: its ends do not meet, as those of a recording do not.
 
 use asperity_dsp::rng::Rng;
 use asperity_fft::{FftPlanner, num_complex::Complex};

@@ -1,15 +1,17 @@
 //! The corpus: recordings, maps and trajectories that tests try the programs on.
 //!
-//! They are not part of the repository. `ASPERITY_CORPUS` names their folder; without it, it is looked for at `../shared/corpus` beside
-//! the workspace. Where a piece is absent a test says that it skips, unless `ASPERITY_NOTHING_SKIPPED=1` demands it: `.ci/run` sets that
-//! where the folder is there.
+//! They are not part of the repository. `ASPERITY_CORPUS` names their folder; without it, it is
+//! looked for at `../shared/corpus` beside the workspace. Where a piece is absent a test says that
+//! it skips, unless `ASPERITY_NOTHING_SKIPPED=1` demands it: `.ci/run` sets that where the folder
+//! is there.
 
 use std::path::{Path, PathBuf};
 
 /// Set to 1, it makes everything obligatory that tests may otherwise skip.
 const NOTHING_SKIPPED: &str = "ASPERITY_NOTHING_SKIPPED";
 
-/// The folder or file `piece` of the corpus; none, with a word, where it is absent and may be skipped.
+/// The folder or file `piece` of the corpus; none, with a word, where it is absent and may be
+/// skipped.
 ///
 /// # Panics
 /// When it is absent and `ASPERITY_NOTHING_SKIPPED=1`.

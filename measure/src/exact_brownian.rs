@@ -1,6 +1,7 @@
-//! Exact fractional Brownian surfaces, the ground truth of the dimension: E|h(p) − h(q)|² = |p − q|^2H on
-//! the whole grid (lengths in diagonals of the map), by circulant embedding after Stein, "Fast and exact simulation of fractional Brownian
-//! surfaces", J. Comput. Graph. Stat. 11 (2002). Independent of the product's own generator on purpose.
+//! Exact fractional Brownian surfaces, the ground truth of the dimension: E|h(p) − h(q)|² = |p −
+//! q|^2H on the whole grid (lengths in diagonals of the map), by circulant embedding after Stein,
+//! "Fast and exact simulation of fractional Brownian surfaces", J. Comput. Graph. Stat. 11 (2002).
+//! Independent of the product's own generator on purpose.
 
 use asperity_dsp::rng::Rng;
 use asperity_fft::{FftPlanner, num_complex::Complex};

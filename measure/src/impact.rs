@@ -5,8 +5,8 @@ use asperity_dsp::rng::Rng;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
-/// A made impact; those of [`fn@impact`]: 50 Hz – 16 kHz log-uniform, T60 30 ms – 4 s, 50 dB of amplitudes, a tenth of the
-/// modes in pairs 1 Hz apart, white noise at `snr_db` of the mean power.
+/// A made impact; those of [`fn@impact`]: 50 Hz – 16 kHz log-uniform, T60 30 ms – 4 s, 50 dB of
+/// amplitudes, a tenth of the modes in pairs 1 Hz apart, white noise at `snr_db` of the mean power.
 #[derive(Debug)]
 pub struct Impact {
     /// Samples a second.

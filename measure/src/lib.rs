@@ -1,7 +1,9 @@
-//! Measuring tools of tests, benches and examples. No program is made of it: a crate takes it as a dev-dependency.
+//! Measuring tools of tests, benches and examples. No program is made of it: a crate takes it as a
+//! dev-dependency.
 //!
-//! It is a crate because a Fourier transform or a matrix of any size is compiled anew, half a minute each, in
-//! every test program that calls the generic code behind it. So nothing here is generic: whoever calls it links it.
+//! It is a crate because a Fourier transform or a matrix of any size is compiled anew, half a
+//! minute each, in every test program that calls the generic code behind it. So nothing here is
+//! generic: whoever calls it links it.
 //!
 //! | module | measures or makes |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! Modes that were found against the truth: missed, spurious, errors in units of the Cramér–Rao bound.
+//! Modes that were found against the truth: missed, spurious, errors in units of the Cramér–Rao
+//! bound.
 
 use crate::cramer_rao::identifiable;
 use crate::impact::{Impact, render_fast};

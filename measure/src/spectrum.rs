@@ -1,8 +1,10 @@
-//! Spectra of signals: power, third-octave levels as vibration and sound are compared, the strongest line.
+//! Spectra of signals: power, third-octave levels as vibration and sound are compared, the
+//! strongest line.
 
 use asperity_fft::{FftPlanner, num_complex::Complex};
 
-/// Levels of the third octaves from 25 Hz to 10 kHz, dB re 1 (rms²); Welch's method with Hann windows.
+/// Levels of the third octaves from 25 Hz to 10 kHz, dB re 1 (rms²); Welch's method with Hann
+/// windows.
 pub fn third_octaves_db(x: &[f32], rate_hz: f64) -> Vec<f64> {
     third_octaves_from_db(x, rate_hz, 8192, 25.0, 27)
 }

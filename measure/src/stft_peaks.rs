@@ -4,7 +4,8 @@ use asperity_dsp::mode::Mode;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
-/// The usual baseline: peaks of a short-time spectrum, decay from a line through their levels in dB.
+/// The usual baseline: peaks of a short-time spectrum, decay from a line through their levels in
+/// dB.
 pub fn stft_peaks(samples: &[f64], rate_hz: f64, most: usize) -> Vec<Mode> {
     let size = 4096.min(samples.len().next_power_of_two() / 2).max(64);
     let hop = size / 8;

@@ -3,9 +3,10 @@
 //! ```text
 //! x = f + κ σ N(0, 1)        p(x | class) = mean over templates t of Π N(x; t, (κσ)² + 2 c²)
 //! ```
-//! f, t: features of what is asked and of a template; σ: the observer's deviation; c: what chance alone makes of the level of a noise that
-//! is listened to for so long, known from theory, for both sides. Nothing is fitted. Features that a trial or a template does not have are
-//! left out of their product.
+//! f, t: features of what is asked and of a template; σ: the observer's deviation; c: what chance
+//! alone makes of the level of a noise that is listened to for so long, known from theory, for both
+//! sides. Nothing is fitted. Features that a trial or a template does not have are left out of
+//! their product.
 
 use crate::constants::LAPSE;
 use asperity_dsp::rng::Rng;

@@ -1,9 +1,11 @@
-//! A frozen observer: told apart by it means told apart by a machine with people's noise, and no better.
+//! A frozen observer: told apart by it means told apart by a machine with people's noise, and no
+//! better.
 //!
-//! A classifier without noise parts surfaces that no finger parts. This one knows a signal only through what the literature says
-//! a hand and an ear know of it: nothing below threshold, levels to within a difference threshold, four looks at most, and a slip
-//! now and then. No constant of it was fitted to an answer that it is asked to give; [`constants`] names where each comes
-//! from, and [`constants_sha256`] is printed beside every result, so that a changed judge is seen.
+//! A classifier without noise parts surfaces that no finger parts. This one knows a signal only
+//! through what the literature says a hand and an ear know of it: nothing below threshold, levels
+//! to within a difference threshold, four looks at most, and a slip now and then. No constant of it
+//! was fitted to an answer that it is asked to give; [`constants`] names where each comes from, and
+//! [`constants_sha256`] is printed beside every result, so that a changed judge is seen.
 //!
 //! ```text
 //! signal → band levels over threshold (looks of 1 s)           [`touch`], [`sound`]
@@ -12,11 +14,13 @@
 //!        → + κ σ N(0, 1) each                                   [`judge`]
 //!        → the class whose templates make it most likely; a guess in 2 % of trials
 //! ```
-//! κ = 1 is the observer; ½ and 2 are printed beside it because σ is known to about a factor of two, and κ = 0 is the
-//! classifier without noise, the ceiling. Templates are rendered with other seeds, paths, speeds and forces than what is asked.
+//! κ = 1 is the observer; ½ and 2 are printed beside it because σ is known to about a factor of
+//! two, and κ = 0 is the classifier without noise, the ceiling. Templates are rendered with other
+//! seeds, paths, speeds and forces than what is asked.
 //!
-//! It is a crate of its own, not a module of `measure`, because the program may judge with it one day, while `measure` is part of no
-//! program; and because nothing that renders may lean on what judges it: neither crate knows the other.
+//! It is a crate of its own, not a module of `measure`, because the program may judge with it one
+//! day, while `measure` is part of no program; and because nothing that renders may lean on what
+//! judges it: neither crate knows the other.
 
 pub mod constants;
 pub mod judge;

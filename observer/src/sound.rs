@@ -17,8 +17,8 @@ fn erb_hz(number: f64) -> f64 {
     (10f64.powf(number / 21.4) - 1.0) / 4.37e-3
 }
 
-/// Features of a signal in pascals; `rings_from` is the sample from which the body is left alone, if it is, and the hand's place
-/// counts where the task gives it.
+/// Features of a signal in pascals; `rings_from` is the sample from which the body is left alone,
+/// if it is, and the hand's place counts where the task gives it.
 #[must_use]
 pub fn heard(signal: &[f64], rate_hz: f64, rings_from: Option<usize>, hand: Option<Hand<'_>>) -> Percept {
     let weight = |f: f64| 1.0 / threshold_pa2(f);

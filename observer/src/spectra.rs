@@ -10,7 +10,8 @@ pub(crate) struct Band {
     pub(crate) high_hz: f64,
 }
 
-/// Beginnings of the windows on a signal, and their length, samples: at most `most`, evenly over the whole.
+/// Beginnings of the windows on a signal, and their length, samples: at most `most`, evenly over
+/// the whole.
 pub(crate) fn looks(samples: usize, look: usize, most: usize) -> (Vec<usize>, usize) {
     let length = look.min(samples).max(1);
     let count = (samples / length).clamp(1, most);
@@ -45,7 +46,8 @@ impl Spectra {
         block[..length / 2 + 1].iter().map(|bin| scale * bin.norm_sqr()).collect()
     }
 
-    /// Power of the bins whose centres lie in a band, each weighed by `weight(f)`. Whole bins, so that a line counts in one band only.
+    /// Power of the bins whose centres lie in a band, each weighed by `weight(f)`. Whole bins, so
+    /// that a line counts in one band only.
     pub(crate) fn in_band(&self, power: &[f64], band: Band, weight: impl Fn(f64) -> f64) -> f64 {
         let bin_of = |frequency_hz: f64| ((frequency_hz / self.bin_hz).ceil() as usize).clamp(1, power.len());
         let (first, end) = (bin_of(band.low_hz), bin_of(band.high_hz));

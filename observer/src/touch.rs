@@ -17,7 +17,8 @@ pub enum Unit {
     Acceleration,
 }
 
-/// Place of the hand, sample by sample: 0–1 across the plate, and the axis along which it moves (0: u, 1: v).
+/// Place of the hand, sample by sample: 0–1 across the plate, and the axis along which it moves (0:
+/// u, 1: v).
 #[derive(Debug, Clone, Copy)]
 pub struct Hand<'a> {
     /// Along u and v.
@@ -96,7 +97,8 @@ pub(crate) fn fluctuations(
         .collect()
 }
 
-/// Level of all groups together in each part of the plate that the hand has crossed, along u and along v.
+/// Level of all groups together in each part of the plate that the hand has crossed, along u and
+/// along v.
 pub(crate) fn places(
     signal: &[f64],
     rate_hz: f64,

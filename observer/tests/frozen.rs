@@ -62,7 +62,8 @@ fn equal_noises_are_told_apart_by_chance() {
     let take = |seed| felt(&noise(seed, 1.0, 1e-5), RATE_HZ, Unit::Displacement, None);
     let class = |from: u64, count| -> Vec<Percept> { (from..from + count).map(take).collect() };
     for kappa in [0.0, 1.0] {
-        // Each pair of classes has its own templates: what one lot of templates prefers is no property of the observer.
+        // Each pair of classes has its own templates: what one lot of templates prefers is no
+        // property of the observer.
         let pairs = 40;
         let right = |pair: u64| {
             let judge = Judge::new(vec![class(1000 * pair, 8), class(1000 * pair + 100, 8)], kappa);

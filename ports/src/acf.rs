@@ -1,7 +1,8 @@
 //! ACF: an actuator configuration of Meta's haptic renderer, read for the range it says.
 //!
-//! It is JSON5: comments, trailing commas, keys without quotes. Of it are used `continuous.frequency_min`, `frequency_max` and
-//! `emphasis_ducking`, and the strokes where it has them; it says no resonance, so nothing of an actuator's response comes from it.
+//! It is JSON5: comments, trailing commas, keys without quotes. Of it are used
+//! `continuous.frequency_min`, `frequency_max` and `emphasis_ducking`, and the strokes where it has
+//! them; it says no resonance, so nothing of an actuator's response comes from it.
 
 use crate::device::{Device, Stroke};
 use crate::error::PortError;

@@ -7,9 +7,10 @@
 //! | duration | `HapticContinuous` events of intensity 1 and sharpness 0, at most 30 s each |
 //! | a stroke | `HapticTransient` of intensity √a and sharpness f |
 //!
-//! A curve holds at most [`MOST_POINTS`] points; a longer one is split, and the point at the joint stands in both. A curve begins at its
-//! own `Time`, its points count from there. Curves scale *every* event of their pattern, so strokes that stand beside curves go into a
-//! second file. `AudioCustom` plays a sound file in step.
+//! A curve holds at most [`MOST_POINTS`] points; a longer one is split, and the point at the joint
+//! stands in both. A curve begins at its own `Time`, its points count from there. Curves scale
+//! *every* event of their pattern, so strokes that stand beside curves go into a second file.
+//! `AudioCustom` plays a sound file in step.
 
 use crate::ahap_reader::{Pieces, parts};
 use crate::clip::{Clip, Read};
@@ -179,7 +180,8 @@ pub fn write(clip: &Clip, sound: Option<&str>) -> Result<Files, PortError> {
     Ok(Files { main: text(pattern)?, transients })
 }
 
-/// Reads a clip: continuous events times their curves, transients as strokes. Sounds and parameters that are no vibration are told.
+/// Reads a clip: continuous events times their curves, transients as strokes. Sounds and parameters
+/// that are no vibration are told.
 ///
 /// # Errors
 /// When it is no AHAP, or a number is no time or value.

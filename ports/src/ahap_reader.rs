@@ -8,18 +8,20 @@
 //! | `Parameter` | a step that is held |
 //! | `AttackTime`, `DecayTime`, `ReleaseTime` | straight ramps of the intensity of as many seconds; decay without `Sustained` only |
 //!
-//! The vendor says of the three times that they run from 0 to 1 and grow, not by what law: they are told. Curves of a file that
-//! holds strokes alone do not reach the file beside it, as two patterns are played by themselves. Intensities are squared, so that
-//! a ramp of one bends: it is cut into pieces that stay within 0.3 dB of it, down to −60 dB.
+//! The vendor says of the three times that they run from 0 to 1 and grow, not by what law: they are
+//! told. Curves of a file that holds strokes alone do not reach the file beside it, as two patterns
+//! are played by themselves. Intensities are squared, so that a ramp of one bends: it is cut into
+//! pieces that stay within 0.3 dB of it, down to −60 dB.
 
 use crate::clip::{AmplitudePoint, Clip, Emphasis, FrequencyPoint, Line, Read};
 use crate::error::{PortError, within};
 use crate::track::Track;
 use serde_json::Value;
 
-/// How long a clip of strokes goes on behind the last one, s.
+/// Length of a clip of strokes behind the last one, s.
 const STROKE_S: f64 = 0.05;
-/// A ramp of intensity is cut where it has grown by this factor: its square is then within 0.25 dB of straight.
+/// A ramp of intensity is cut where it has grown by this factor: its square is then within 0.25 dB
+/// of straight.
 const GROWN: f64 = 1.4;
 /// Intensities below this are not told apart: −60 dB.
 const FAINT: f64 = 0.03;
@@ -32,12 +34,12 @@ struct Held {
     sharpness: f64,
     attack_s: f64,
     release_s: f64,
-    /// Of an event that is not sustained.
+    /// Parameters of an event that is not sustained.
     decay_s: Option<f64>,
 }
 
 impl Held {
-    /// Where its intensity bends, s.
+    /// Times at which its intensity bends, s.
     fn bends_s(&self) -> [f64; 5] {
         let full_s = (self.begins_s + self.attack_s).min(self.ends_s);
         let decayed_s = self.decay_s.map_or(self.ends_s, |decay_s| (full_s + decay_s).min(self.ends_s));
@@ -123,7 +125,7 @@ impl Pieces {
         Err(PortError::new("item", "is unknown", "must be Event, ParameterCurve or Parameter"))
     }
 
-    /// What a parameter acts on.
+    /// Target of a parameter.
     fn track(&mut self, parameter: &Value) -> Option<&mut Track> {
         match parameter.get("ParameterID").and_then(Value::as_str) {
             Some("HapticIntensityControl") => Some(&mut self.intensity),
@@ -317,7 +319,8 @@ impl Pieces {
     }
 }
 
-/// Where ramps of intensities are cut, as parts of their length: their squares are straight enough in between.
+/// Cuts of ramps of intensities, as parts of their length: their squares are straight enough in
+/// between.
 pub(crate) fn parts(from: &[f64], to: &[f64]) -> Vec<f64> {
     let mut parts = vec![0.0, 1.0];
     for (&a, &b) in from.iter().zip(to) {

@@ -1,4 +1,5 @@
-//! Android's vibrator: a waveform of levels and two kinds of envelope, as one JSON file for an app to hand on.
+//! Android's vibrator: a waveform of levels and two kinds of envelope, as one JSON file for an app
+//! to hand on.
 //!
 //! | key | for | rule kept |
 //! |---|---|---|
@@ -6,8 +7,9 @@
 //! | `basic_envelope` | `BasicEnvelopeBuilder.addControlPoint`, API 36 | intensity and sharpness 0–1, 20 to 1000 ms a point, ends at intensity 0 |
 //! | `waveform_envelope` | `WaveformEnvelopeBuilder.addControlPoint`, API 36 | amplitude 0–1, Hz inside the device's range, 20 to 1000 ms, ends at amplitude 0 |
 //!
-//! A control point is reached *after* its duration, from the one before; the first from 0. What a phone allows (how many points, how
-//! short) is known on the phone only: [`LEAST_MS`] and [`MOST_MS`] are what every phone that has envelopes must allow (recalled).
+//! A control point is reached *after* its duration, from the one before; the first from 0. What a
+//! phone allows (how many points, how short) is known on the phone only: [`LEAST_MS`] and
+//! [`MOST_MS`] are what every phone that has envelopes must allow (recalled).
 
 use crate::clip::{Clip, Line};
 use crate::device::Device;
@@ -40,7 +42,7 @@ pub struct Waveform {
     pub timings_ms: Vec<u64>,
     /// 1 to 255.
     pub amplitudes: Vec<u8>,
-    /// Where to repeat from; −1: not at all.
+    /// Index to repeat from; −1: not at all.
     pub repeat: i32,
 }
 
@@ -51,7 +53,7 @@ pub struct BasicPoint {
     pub intensity: f64,
     /// 0 to 1.
     pub sharpness: f64,
-    /// How long it takes to get here, ms.
+    /// Time to get here, ms.
     pub duration_ms: u64,
 }
 
@@ -62,11 +64,11 @@ pub struct WaveformPoint {
     pub amplitude: f64,
     /// Hz.
     pub frequency_hz: f64,
-    /// How long it takes to get here, ms.
+    /// Time to get here, ms.
     pub duration_ms: u64,
 }
 
-/// What a phone plays of a clip.
+/// Output of a phone for a clip.
 ///
 /// # Errors
 /// When the clip breaks a rule.
@@ -155,7 +157,7 @@ fn envelope(clip: &Clip, device: &Device) -> Vec<WaveformPoint> {
     points
 }
 
-/// What is left of the physical envelope: a sine that goes from point to point.
+/// Physical envelope after the format: a sine that goes from point to point.
 #[must_use]
 pub fn rendered(points: &[WaveformPoint], rate_hz: f64) -> Vec<f64> {
     let mut out = Vec::new();

@@ -1,7 +1,8 @@
 //! Clip: a vibration as two envelopes, amplitude and frequency, and short strokes upon them.
 //!
-//! This is what phones and headsets play, whatever their files are called: a sine whose peak and frequency go in straight lines from
-//! point to point. Amplitude 1 is a sine of peak 1 in the samples that it was made from; frequency 0 to 1 spans the device's range.
+//! This is what phones and headsets play, whatever their files are called: a sine whose peak and
+//! frequency go in straight lines from point to point. Amplitude 1 is a sine of peak 1 in the
+//! samples that it was made from; frequency 0 to 1 spans the device's range.
 
 use crate::error::{PortError, within};
 
@@ -44,13 +45,13 @@ pub struct About {
     pub editor: String,
     /// Its author.
     pub author: String,
-    /// What it was made from.
+    /// Origin.
     pub source: String,
     /// The project it belongs to.
     pub project: String,
     /// Words to find it by.
     pub tags: Vec<String>,
-    /// What it is.
+    /// Description.
     pub description: String,
 }
 
@@ -65,7 +66,7 @@ pub struct Clip {
     pub about: About,
 }
 
-/// What was read, and what was left out or changed in reading.
+/// Clip that was read, and what was left out or changed in reading.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Read {
     /// The clip.
@@ -81,8 +82,8 @@ impl Clip {
         self.amplitude.last().map_or(0.0, |point| point.time_s)
     }
 
-    /// The clip itself when it keeps every rule: two points, a duration, times that do not fall, values from 0 to 1, no stroke below
-    /// its envelope, no frequency outside the amplitude's time.
+    /// The clip itself when it keeps every rule: two points, a duration, times that do not fall,
+    /// values from 0 to 1, no stroke below its envelope, no frequency outside the amplitude's time.
     ///
     /// # Errors
     /// The first rule that is broken, with its point.
@@ -142,7 +143,8 @@ impl<I: Iterator<Item = (f64, f64)>> Line<I> {
         Self { rest, from: first, to: first }
     }
 
-    /// The value at a time that is not before the last one asked for; held before the first point and behind the last.
+    /// The value at a time that is not before the last one asked for; held before the first point
+    /// and behind the last.
     pub(crate) fn at(&mut self, time_s: f64) -> f64 {
         while time_s >= self.to.0 {
             let Some(next) = self.rest.next() else {

@@ -1,4 +1,5 @@
-//! Device profile: what a port has to know of the hardware behind it, as TOML with the source of every number.
+//! Device profile: what a port has to know of the hardware behind it, as TOML with the source of
+//! every number.
 //!
 //! ```toml
 //! label = "Controller of a headset"
@@ -13,20 +14,20 @@
 //! band_hz = "published profile"
 //! ```
 //!
-//! An actuator configuration (ACF: JSON with comments) gives its range, its ducking and nothing else; the rest stays as the default
-//! device has it.
+//! An actuator configuration (ACF: JSON with comments) gives its range, its ducking and nothing
+//! else; the rest stays as the default device has it.
 
 use crate::error::{PortError, within};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// What a stroke is at one end of its scale.
+/// Stroke at one end of its scale.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stroke {
     /// Its frequency, Hz.
     pub hz: f64,
-    /// How long it lasts, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// A square wave instead of a sine.
     #[serde(default)]
@@ -37,7 +38,7 @@ pub struct Stroke {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Strokes {
-    /// What is left of the envelope while a stroke sounds, 0 to 1.
+    /// Share of the envelope that is left while a stroke sounds, 0 to 1.
     pub ducking: f64,
     /// At emphasis frequency 0.
     pub dull: Stroke,
@@ -45,13 +46,13 @@ pub struct Strokes {
     pub sharp: Stroke,
 }
 
-/// What a port has to know of the hardware.
+/// Data of the hardware that a port needs.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Device {
-    /// What it is.
+    /// Description.
     pub label: String,
-    /// What it plays, lowest and highest, Hz.
+    /// Range of frequencies, lowest and highest, Hz.
     pub band_hz: [f64; 2],
     /// Rate of its waveforms, Hz.
     pub pcm_rate_hz: f64,
@@ -59,7 +60,7 @@ pub struct Device {
     pub points_per_s: f64,
     /// Its strokes.
     pub emphasis: Strokes,
-    /// Where each number comes from, by field.
+    /// Source of each number, by field.
     pub source: BTreeMap<String, String>,
 }
 

@@ -1,5 +1,6 @@
-//! DualSense: by cable four channels at 48 kHz, of which the third and fourth drive the actuators; by air packets of 64 bytes, 32 frames
-//! of two signed bytes at 3 kHz. Neither is documented by its maker: both as several users report them.
+//! DualSense: by cable four channels at 48 kHz, of which the third and fourth drive the actuators;
+//! by air packets of 64 bytes, 32 frames of two signed bytes at 3 kHz. Neither is documented by its
+//! maker: both as several users report them.
 
 /// Rate by cable, Hz.
 pub const CABLE_RATE_HZ: f64 = 48_000.0;
@@ -8,7 +9,8 @@ pub const AIR_RATE_HZ: f64 = 3000.0;
 /// Bytes of a packet.
 pub const PACKET_BYTES: usize = 64;
 
-/// Frames of four channels: sound left and right, actuator left and right. The shorter ones end in silence.
+/// Frames of four channels: sound left and right, actuator left and right. The shorter ones end in
+/// silence.
 #[must_use]
 pub fn four_channels(sound: [&[f32]; 2], actuators: [&[f32]; 2]) -> Vec<[f32; 4]> {
     let all = [sound[0], sound[1], actuators[0], actuators[1]];

@@ -8,9 +8,9 @@ use std::fmt::Display;
 pub struct PortError {
     /// The field or file.
     pub at: String,
-    /// What is wrong with it.
+    /// Fault of it.
     pub what: String,
-    /// What would be right.
+    /// Remedy.
     pub right: String,
 }
 
@@ -25,7 +25,7 @@ impl PortError {
         }
     }
 
-    /// The same inside a file or table.
+    /// Error inside a file or table.
     #[must_use]
     pub fn within(self, outer: impl Display) -> Self {
         Self { at: format!("{outer}: {}", self.at), ..self }

@@ -1,7 +1,8 @@
-//! What is felt of a displacement: its samples over the detection threshold.
+//! Felt part of a displacement: its samples over the detection threshold.
 //!
-//! The [`THRESHOLD_DB`] is that of a fingertip. Between its points it is linear in log f; below the first it is held, above the last it
-//! rises on by 40 dB an octave, which nobody has measured and nobody feels. Phases stay as they are.
+//! The [`THRESHOLD_DB`] is that of a fingertip. Between its points it is linear in log f; below the
+//! first it is held, above the last it rises on by 40 dB an octave, which nobody has measured and
+//! nobody feels. Phases stay as they are.
 
 pub use asperity_dsp::sensation::THRESHOLD_DB;
 use asperity_fft::{FftPlanner, num_complex::Complex};
@@ -9,7 +10,8 @@ use asperity_fft::{FftPlanner, num_complex::Complex};
 /// Everything is compared at this rate, Hz.
 pub const RATE_HZ: f64 = 8000.0;
 
-/// How much of a displacement is felt, against 250 Hz where most is: 1 there, 0.01 where the threshold is 40 dB higher.
+/// Weight of a displacement by frequency, against 250 Hz where most is felt: 1 there, 0.01 where
+/// the threshold is 40 dB higher.
 #[must_use]
 pub fn weight(frequency_hz: f64) -> f64 {
     let (last_hz, last_db) = THRESHOLD_DB[THRESHOLD_DB.len() - 1];
@@ -26,7 +28,8 @@ pub fn weight(frequency_hz: f64) -> f64 {
     10f64.powf((-24.0 - db) / 20.0)
 }
 
-/// A length that transforms fast: with room behind the samples, so that the end does not wrap into the beginning.
+/// A length that transforms fast: with room behind the samples, so that the end does not wrap into
+/// the beginning.
 pub(crate) fn padded(count: usize) -> usize {
     let least = count + 2048;
     let mut best = least.next_power_of_two();
@@ -71,7 +74,8 @@ pub fn felt(samples: &[f64]) -> Vec<f64> {
     shaped(samples, RATE_HZ, |hz| weight(hz.abs()))
 }
 
-/// Mean power of each bin of windows of 4096 samples (1.95 Hz), Hann, half overlapping; the sum is the mean square.
+/// Mean power of each bin of windows of 4096 samples (1.95 Hz), Hann, half overlapping; the sum is
+/// the mean square.
 pub(crate) fn power(samples: &[f64]) -> Vec<f64> {
     const LENGTH: usize = 4096;
     let fft = FftPlanner::new().plan_fft_forward(LENGTH);

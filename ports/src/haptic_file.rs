@@ -6,8 +6,9 @@
 //!    "amplitude":[{"time":0.0,"amplitude":0.2,"emphasis":{"amplitude":0.6,"frequency":0.7}},{"time":1.0,"amplitude":0.0}],
 //!    "frequency":[{"time":0.0,"frequency":0.5}]}}}}
 //! ```
-//! Everything lies in 0–1; at least two amplitude points, times that do not fall, strokes not below the envelope, no frequency point
-//! outside the amplitude's time. Times are read as `f32` by the public reader, so a clip must last in `f32` too.
+//! Everything lies in 0–1; at least two amplitude points, times that do not fall, strokes not below
+//! the envelope, no frequency point outside the amplitude's time. Times are read as `f32` by the
+//! public reader, so a clip must last in `f32` too.
 
 use crate::clip::{About, AmplitudePoint, Clip, Emphasis, FrequencyPoint, Read};
 use crate::error::PortError;
@@ -79,7 +80,8 @@ struct FileFrequency {
     frequency: f64,
 }
 
-/// Reads a clip. Frequency points outside the amplitude's time, which early editors wrote, are left out and told.
+/// Reads a clip. Frequency points outside the amplitude's time, which early editors wrote, are left
+/// out and told.
 ///
 /// # Errors
 /// When it is no `.haptic` of version 1, or breaks another rule of the format.

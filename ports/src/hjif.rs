@@ -1,12 +1,15 @@
-//! `.hjif`: MPEG's haptics as JSON (ISO/IEC 23090-31), written as one cubic curve that keeps the waveform.
+//! `.hjif`: MPEG's haptics as JSON (ISO/IEC 23090-31), written as one cubic curve that keeps the
+//! waveform.
 //!
-//! What is written: profile Main, level 1, timescale 8000, one vibrotactile perception with one channel of one `Curve` band, `Cubic`, one
-//! effect at position 0 whose keyframes lie where [`crate::keyframes`] puts them. Amplitudes stay within ±1, which a player clamps to
-//! before it applies the channel's gain.
+//! What is written: profile Main, level 1, timescale 8000, one vibrotactile perception with one
+//! channel of one `Curve` band, `Cubic`, one effect at position 0 whose keyframes lie where
+//! [`crate::keyframes`] puts them. Amplitudes stay within ±1, which a player clamps to before it
+//! applies the channel's gain.
 //!
-//! What is read: `Curve` (linear and cubic), `VectorialWave`, `Transient`, effects of the library. Wavelet streams, composite effects and
-//! other curves are refused by name. Times are ticks of the timescale throughout, as the standard says; the reference software differs
-//! for curve effects that do not begin at 0.
+//! What is read: `Curve` (linear and cubic), `VectorialWave`, `Transient`, effects of the library.
+//! Wavelet streams, composite effects and other curves are refused by name. Times are ticks of the
+//! timescale throughout, as the standard says; the reference software differs for curve effects
+//! that do not begin at 0.
 
 use crate::error::{PortError, within};
 use crate::keyframes;
@@ -23,18 +26,19 @@ const TRANSIENT_S: f64 = 0.022;
 /// Rate at which files are rendered, Hz.
 pub const RATE_HZ: f64 = 8000.0;
 
-/// What was written, and how much of it.
+/// Written file, and its size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Written {
     /// The file.
     pub text: String,
-    /// How many keyframes.
+    /// Number of keyframes.
     pub keyframes: usize,
-    /// What a player makes of it, at 8 kHz.
+    /// Output of a player, at 8 kHz.
     pub samples: Vec<f64>,
 }
 
-/// Writes samples at 8 kHz within ±1 by at most `points_per_s` keyframes a second, fewer when `wanted_snr_db` is reached.
+/// Writes samples at 8 kHz within ±1 by at most `points_per_s` keyframes a second, fewer when
+/// `wanted_snr_db` is reached.
 ///
 /// # Errors
 /// When there are no samples, or one is beyond ±1.

@@ -5,8 +5,8 @@
 //! places: least Σ (error of each span) + λ (number of spans), by dynamic programming over a second at a time; λ by bisection
 //! values: least squares between the places chosen (a tridiagonal system)
 //! ```
-//! The curve is flat in every keyframe, as a waveform is at its extremes, so a point put anywhere else may do harm: that is why places
-//! are not simply added where the error is greatest.
+//! The curve is flat in every keyframe, as a waveform is at its extremes, so a point put anywhere
+//! else may do harm: that is why places are not simply added where the error is greatest.
 
 /// Samples in which places are chosen together.
 const BLOCK: usize = 8000;
@@ -16,7 +16,8 @@ const SPANS: [usize; 32] = [
     128, 192, 256, 512,
 ];
 
-/// Places and values that stand for samples: at most `most` of them, fewer when the wanted ratio is reached with fewer.
+/// Places and values that stand for samples: at most `most` of them, fewer when the wanted ratio is
+/// reached with fewer.
 #[must_use]
 pub fn keyframes(samples: &[f64], most: usize, wanted_snr_db: f64) -> Vec<(usize, f64)> {
     let Some(last) = samples.len().checked_sub(1).filter(|last| *last > 0) else {
@@ -50,7 +51,8 @@ fn places(samples: &[f64], most: usize, allowed: f64) -> Vec<usize> {
         return vec![samples.len() - 1];
     }
     let fits = |(ends, error): &(Vec<usize>, f64)| ends.len() <= most && *error <= allowed;
-    // The price of a point, between nothing and everything: the dearest that still reaches what is wanted, or the cheapest allowed.
+    // The price of a point, between nothing and everything: the dearest that still reaches what is
+    // wanted, or the cheapest allowed.
     let (mut cheap, mut dear) = (1e-12 * energy, energy);
     let mut best = cheapest(samples.len(), &errors, dear);
     for _ in 0..16 {

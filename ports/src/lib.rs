@@ -1,7 +1,8 @@
 //! From a vibration to what hardware plays, and back.
 //!
-//! A phone, a headset, a pad plays no 44.1 kHz displacement: it wants points of an envelope, two motor levels, or a waveform at a rate of
-//! its own. Everything here is a pure function; the engine does not depend on it.
+//! A phone, a headset, a pad plays no 44.1 kHz displacement: it wants points of an envelope, two
+//! motor levels, or a waveform at a rate of its own. Everything here is a pure function; the engine
+//! does not depend on it.
 //!
 //! | file | what |
 //! |---|---|

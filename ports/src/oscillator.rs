@@ -3,8 +3,9 @@
 //! ```text
 //! y(n) = a(n) sin(2π φ(n))      φ(n + 1) = φ(n) + f(n)/rate
 //! ```
-//! with a and f in straight lines between their points. A stroke adds a wave of its own, from the dull shape to the sharp one by its
-//! frequency, and lowers the envelope meanwhile. This is the rule of Meta's public renderer, in `f64`.
+//! with a and f in straight lines between their points. A stroke adds a wave of its own, from the
+//! dull shape to the sharp one by its frequency, and lowers the envelope meanwhile. This is the
+//! rule of Meta's public renderer, in `f64`.
 
 use crate::clip::{Clip, Emphasis};
 use crate::device::Device;

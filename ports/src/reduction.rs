@@ -15,7 +15,8 @@
 //! | the score | [`crate::score`] | |
 //! | strokes | [`Options::strokes_s`] | begin where a contact began or something struck; never guessed from the samples |
 //!
-//! Ours: the drawn tone and the choice by score. It looks ahead; what looks back only is the kernel `asperity_dsp::vibration_points`.
+//! Ours: the drawn tone and the choice by score. It looks ahead; what looks back only is the kernel
+//! `asperity_dsp::vibration_points`.
 
 use crate::clip::{About, AmplitudePoint, Clip, Emphasis, FrequencyPoint, LONGEST_S};
 use crate::device::Device;
@@ -28,7 +29,7 @@ use crate::thinning::thinned;
 use crate::tone_track::{Choice, ToneTrack};
 use crate::{oscillator, wave_track};
 
-/// How the frequency follows the samples.
+/// Choice of the frequency that follows the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     /// The strongest tone of every moment.
@@ -54,35 +55,35 @@ impl Way {
     }
 }
 
-/// What is wanted.
+/// Specification.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Most points a second of either envelope; none: what the device holds.
     pub points_per_s: Option<f64>,
-    /// Where strokes begin, s.
+    /// Beginnings of strokes, s.
     pub strokes_s: Vec<f64>,
     /// Bring the peak to 1 even where it lies below.
     pub normalise: bool,
     /// One way only; none: whichever scores best.
     pub way: Option<Way>,
-    /// What the file says of itself.
+    /// Text of the file about itself.
     pub about: About,
 }
 
-/// What came of it.
+/// Result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reduction {
     /// The clip.
     pub clip: Clip,
-    /// What the samples were multiplied by to fit 0–1.
+    /// Factor of the samples that fits them into 0–1.
     pub gain: f64,
     /// Which way was taken longest.
     pub way: Way,
     /// The original at 8 kHz, with the gain.
     pub original: Vec<f64>,
-    /// What is left of it, at 8 kHz.
+    /// Output of the device, at 8 kHz.
     pub left: Vec<f64>,
-    /// How far they lie apart.
+    /// Distance of the two.
     pub score: Score,
 }
 
@@ -90,7 +91,7 @@ pub struct Reduction {
 const ROUNDS: usize = 5;
 /// Clips are reduced piece by piece, s: a piece has its own spectrum to come near.
 const PIECE_S: f64 = 20.0;
-/// So many pieces try every way; those after them take the one that was taken most.
+/// Number of pieces that try every way; those after them take the one that was taken most.
 const ALL_WAYS_PIECES: usize = 3;
 /// Half of the window of a level, s.
 const LEVEL_S: f64 = 0.012;
@@ -217,7 +218,8 @@ impl<'a> Piece<'a> {
         piece
     }
 
-    /// What begins at a contact: as strong as the 20 ms behind it, as sharp as they are high.
+    /// Stroke that begins at a contact: as strong as the 20 ms behind it, as sharp as they are
+    /// high.
     fn stroke(&self, begins_s: f64) -> Option<Emphasis> {
         let first = (begins_s * RATE_HZ) as usize;
         let stretch = self.samples.get(first..(first + 160).min(self.samples.len()))?;
@@ -279,7 +281,8 @@ impl<'a> Piece<'a> {
             };
             let left = self.left(&nodes);
             let score = self.reference.score(&left);
-            // What is left of a constant error is taken out when all is done, so it costs nothing here.
+            // What is left of a constant error is taken out when all is done, so it costs nothing
+            // here.
             let whole = 10f64.powf(-score.level_bias_db.clamp(-20.0, 20.0) / 20.0);
             nodes.amplitude.iter_mut().for_each(|a| *a *= whole);
             let cost = cost(&Score { level_bias_db: 0.0, ..score }) + 0.1 * score.level_bias_db.abs();
@@ -339,7 +342,8 @@ fn choice(way: Way) -> Choice {
     if way == Way::Strongest { Choice::Strongest } else { Choice::Drawn }
 }
 
-/// What rounds and ways are compared by, dB: the four numbers, each weighed by how near its bound it lies.
+/// Cost that rounds and ways are compared by, dB: the four numbers, each weighed by how near its
+/// bound it lies.
 fn cost(score: &Score) -> f64 {
     score.in_band_error_db
         + 0.5 * score.balance_db

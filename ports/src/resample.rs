@@ -3,8 +3,8 @@
 //! ```text
 //! y(t) = Σ_n x(n) · c sinc(c (t − n)) · w((t − n) c / 32)      c = min(1, to/from) · 0.94
 //! ```
-//! with a Kaiser window w of β = 9 over 32 zero crossings on either side: what would fold back lies below −85 dB, what is kept is flat
-//! to 0.01 dB up to 0.9 of the lower Nyquist frequency.
+//! with a Kaiser window w of β = 9 over 32 zero crossings on either side: what would fold back lies
+//! below −85 dB, what is kept is flat to 0.01 dB up to 0.9 of the lower Nyquist frequency.
 
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -14,10 +14,11 @@ const CROSSINGS: usize = 32;
 /// Steps of the table between two crossings.
 const STEPS: usize = 512;
 const BETA: f64 = 9.0;
-/// Where the passband's middle of the edge lies.
+/// Middle of the passband's edge.
 const EDGE: f64 = 0.94;
 
-/// `samples` at `from_hz` → at `to_hz`; sample 0 stays at time 0, and as many come out as the duration holds.
+/// `samples` at `from_hz` → at `to_hz`; sample 0 stays at time 0, and as many come out as the
+/// duration holds.
 #[must_use]
 pub fn resampled(samples: &[f64], from_hz: f64, to_hz: f64) -> Vec<f64> {
     if from_hz == to_hz {
@@ -52,7 +53,8 @@ fn weight(table: &[f64], cut: f64, distance: f64) -> f64 {
     table[index] + part * (table[index + 1] - table[index])
 }
 
-/// Two rates in whole numbers without a common divisor: the kernel then stands at as many places between two samples as `to` says.
+/// Two rates in whole numbers without a common divisor: the kernel then stands at as many places
+/// between two samples as `to` says.
 struct Ratio {
     from: usize,
     to: usize,
@@ -60,7 +62,7 @@ struct Ratio {
 
 /// The kernel at one place between two samples.
 struct Phase {
-    /// Of the first weight, from the sample before the place.
+    /// Distance of the first weight, from the sample before the place.
     first: isize,
     weights: Vec<f64>,
 }

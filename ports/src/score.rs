@@ -7,8 +7,8 @@
 //! | level bias | median of the differences of the levels of 20 ms, where the original is within 30 dB of its loudest |
 //! | envelope correlation | of those levels as amplitudes, over the whole clip |
 //!
-//! All of it at 8 kHz, displacement over the [detection threshold](crate::felt). The first two are about which frequencies, the last two
-//! about how much and when.
+//! All of it at 8 kHz, displacement over the [detection threshold](crate::felt). The first two are
+//! about which frequencies, the last two about how much and when.
 
 use crate::felt::{RATE_HZ, bin_hz, felt, power, weight};
 
@@ -44,7 +44,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Of samples at 8 kHz for a device's range.
+    /// Score of samples at 8 kHz for a device's range.
     #[must_use]
     pub fn new(samples: &[f64], band_hz: [f64; 2]) -> Self {
         let spectrum = power(samples);

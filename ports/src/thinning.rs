@@ -2,7 +2,8 @@
 
 use crate::clip::Clip;
 
-/// Both envelopes without the points that lie within a tolerance of the line between their neighbours.
+/// Both envelopes without the points that lie within a tolerance of the line between their
+/// neighbours.
 pub(crate) fn thinned(clip: &Clip, tolerance: f64) -> Clip {
     let peak = clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);
     let levels: Vec<(f64, f64)> = clip.amplitude.iter().map(|p| (p.time_s, p.amplitude)).collect();

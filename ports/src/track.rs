@@ -1,4 +1,5 @@
-//! Track: a parameter over time, from curves and single values, each of which acts from its own beginning on.
+//! Track: a parameter over time, from curves and single values, each of which acts from its own
+//! beginning on.
 
 /// Curves in the order in which they were read.
 #[derive(Debug, Clone, Default)]

@@ -1,7 +1,8 @@
 //! Wave track: the wave inside the device's range, followed by its phase.
 //!
-//! Between two nodes an oscillator whose frequency goes in a straight line advances by h (f_i + f_{i+1})/2 turns. The frequency of the
-//! next node is that of the wave there, corrected by a part of the phase that is missing, and kept inside the range.
+//! Between two nodes an oscillator whose frequency goes in a straight line advances by h (f_i +
+//! f_{i+1})/2 turns. The frequency of the next node is that of the wave there, corrected by a part
+//! of the phase that is missing, and kept inside the range.
 
 use crate::felt::{RATE_HZ, analytic};
 use asperity_fft::num_complex::Complex;

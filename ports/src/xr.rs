@@ -1,5 +1,5 @@
-//! OpenXR: parametric frames (`XR_EXT_haptic_parametric`), amplitude envelopes (`XR_FB_haptic_amplitude_envelope`) and pieces of PCM
-//! (`XR_FB_haptic_pcm`).
+//! OpenXR: parametric frames (`XR_EXT_haptic_parametric`), amplitude envelopes
+//! (`XR_FB_haptic_amplitude_envelope`) and pieces of PCM (`XR_FB_haptic_pcm`).
 //!
 //! | extension | rule kept |
 //! |---|---|
@@ -19,7 +19,7 @@ pub const MOST_POINTS: usize = 500;
 pub const MOST_AMPLITUDES: usize = 4000;
 /// Samples that the runtime stores.
 pub const PCM_STORE: usize = 4000;
-/// How long a frame's last values are held, s: the next frame has to come within it.
+/// Time that a frame's last values are held, s: the next frame has to come within it.
 pub const HELD_S: f64 = 0.05;
 
 /// A point: ns since the frame's beginning, 0 to 1.
@@ -42,7 +42,7 @@ pub struct Transient {
     pub frequency: f32,
 }
 
-/// Whether a frame stands alone or goes on in the next.
+/// Position of a frame: alone, or one that goes on in the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Streaming {
     /// All there is.
@@ -55,7 +55,7 @@ pub enum Streaming {
     Final,
 }
 
-/// What one call hands over.
+/// Frame that one call hands over.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// The amplitude's envelope.
@@ -68,7 +68,7 @@ pub struct Frame {
     pub min_frequency_hz: f32,
     /// Frequency 1, Hz.
     pub max_frequency_hz: f32,
-    /// Where it stands among others.
+    /// Position among others.
     pub streaming: Streaming,
     /// ns.
     pub duration_ns: i64,
@@ -81,7 +81,8 @@ fn ns(time_s: f64) -> i64 {
 /// A clip as frames, the first at least `first_frame_s` long.
 ///
 /// # Errors
-/// When the clip breaks a rule, or a first frame of that length could hold more points than a call may.
+/// When the clip breaks a rule, or a first frame of that length could hold more points than a call
+/// may.
 pub fn frames(clip: &Clip, device: &Device, first_frame_s: f64) -> Result<Vec<Frame>, PortError> {
     let clip = clip.clone().checked()?;
     within("first_frame_s", first_frame_s, [0.0, 10.0])?;
@@ -219,7 +220,8 @@ pub struct PcmFeed<'a> {
 }
 
 impl<'a> PcmFeed<'a> {
-    /// Pieces of `ahead_s` at the rate that the runtime says; the rate is 0 until a controller is held, and is asked for again.
+    /// Pieces of `ahead_s` at the rate that the runtime says; the rate is 0 until a controller is
+    /// held, and is asked for again.
     ///
     /// # Errors
     /// When the rate is not one yet.
@@ -230,18 +232,18 @@ impl<'a> PcmFeed<'a> {
         Ok(Self { samples, sent: 0, piece })
     }
 
-    /// What the next call hands over; it appends to what waits.
+    /// Frame that the next call hands over; it appends to what waits.
     #[must_use]
     pub fn next_piece(&self) -> &'a [f32] {
         &self.samples[self.sent..(self.sent + self.piece).min(self.samples.len())]
     }
 
-    /// What the runtime says that it has taken; the rest is sent again.
+    /// Number of samples that the runtime has taken; the rest is sent again.
     pub fn consumed(&mut self, count: usize) {
         self.sent = (self.sent + count.min(self.piece)).min(self.samples.len());
     }
 
-    /// Whether everything has been taken.
+    /// Tests whether everything has been taken.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.sent == self.samples.len()

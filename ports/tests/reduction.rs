@@ -18,7 +18,8 @@ fn wav(path: &Path) -> (Vec<f64>, f64) {
     (all.into_iter().step_by(usize::from(spec.channels)).collect(), f64::from(spec.sample_rate))
 }
 
-/// What a public analysis does by default: an envelope follower, and the spectral centroid for the frequency, 60 points a second.
+/// What a public analysis does by default: an envelope follower, and the spectral centroid for the
+/// frequency, 60 points a second.
 fn envelope_and_centroid(samples: &[f64], rate_hz: f64, device: &Device) -> Clip {
     use asperity_ports::{AmplitudePoint, FrequencyPoint};
     let x = resample::resampled(samples, rate_hz, felt::RATE_HZ);
@@ -44,7 +45,8 @@ fn envelope_and_centroid(samples: &[f64], rate_hz: f64, device: &Device) -> Clip
     Clip { amplitude, frequency, ..Clip::default() }
 }
 
-/// Every WAV file of the corpus' impacts, in the order of their names: none of them chose a number of the reduction.
+/// Every WAV file of the corpus' impacts, in the order of their names: none of them chose a number
+/// of the reduction.
 #[test]
 fn recordings_are_felt_alike_on_a_headsets_controller() {
     let Some(folder) = corpus("impacts") else { return };
@@ -81,7 +83,8 @@ fn recordings_are_felt_alike_on_a_headsets_controller() {
         mean(&plainly_db)
     );
     assert!(mean(&ours_db[..5]) <= 5.0);
-    // Some of them ring above the device's range only: what is felt of that comes back inside it, where nothing was.
+    // Some of them ring above the device's range only: what is felt of that comes back inside it,
+    // where nothing was.
     assert!(mean(&ours_db) <= 6.0);
     assert!(mean(&plainly_db) >= mean(&ours_db) + 6.0);
 }

@@ -1,7 +1,7 @@
 //! The formats' own decoders, made by others, read what is written here.
 //!
-//! `ASPERITY_VALIDATORS` names the folder in which `meta-validate`, `meta-render` and `hjif-synth` stand; without it these tests say
-//! that they skip.
+//! `ASPERITY_VALIDATORS` names the folder in which `meta-validate`, `meta-render` and `hjif-synth`
+//! stand; without it these tests say that they skip.
 
 use asperity_dsp::rng::Rng;
 use asperity_ports::reduction::{Options, reduce};
@@ -105,7 +105,8 @@ fn metas_own_renderer_makes_of_a_clip_what_ours_does() {
         assert_eq!(theirs.len(), ours.len());
         let score = asperity_ports::score::Reference::new(&theirs, device.band_hz).score(&ours);
         println!("{score:?}");
-        // It begins a ramp on the next whole sample, so phases drift; levels and third octaves do not.
+        // It begins a ramp on the next whole sample, so phases drift; levels and third octaves do
+        // not.
         assert!(
             score.in_band_error_db < 1.0
                 && score.level_bias_db.abs() < 0.2
@@ -141,7 +142,8 @@ fn mpegs_synthesiser_makes_of_a_curve_the_samples_it_was_written_from_not_one_la
         let (input, output) = (folder.join(format!("{index}.hjif")), folder.join(format!("{index}.wav")));
         std::fs::write(&input, &written.text).unwrap();
         let told = Command::new(&synth).arg("-f").arg(&input).arg("-o").arg(&output).output().unwrap();
-        // The standard's schema is not public, so that the synthesiser cannot find it says nothing about the file.
+        // The standard's schema is not public, so that the synthesiser cannot find it says nothing
+        // about the file.
         let words: String = String::from_utf8_lossy(&told.stderr)
             .lines()
             .filter(|line| !line.contains("JSON schema"))

@@ -14,7 +14,8 @@ use crate::triangle_tree::TriangleTree;
 use crate::vector::{add_scaled, distance, longest_side};
 use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, check_side};
 
-/// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
+/// Spacings to the shortest wave through the body and along a wall: the highest mode is then right
+/// to about 1 %.
 const PER_SHEAR_WAVE: f64 = 6.0;
 const PER_BENDING_WAVE: f64 = 11.0;
 /// A body longer than this is likely to be in other units, m: a 5-inch print is read as 5 m.
@@ -22,14 +23,15 @@ const LARGE_M: f64 = 2.0;
 /// A body shorter than this is likely to be in other units, m.
 const SMALL_M: f64 = 0.002;
 
-/// How a body is made of a mesh.
+/// Settings for making a body of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Making {
-    /// What it is made of.
+    /// Material.
     pub material: Elastic,
     /// Longest side it shall have, m; scales about the origin of its frame.
     pub size_m: Option<f64>,
-    /// Length of the mesh's unit, m, unless a size is given; none: metres, and doubtful sizes are told.
+    /// Length of the mesh's unit, m, unless a size is given; none: metres, and doubtful sizes are
+    /// told.
     pub unit_m: Option<f64>,
     /// Thickness of the sheet that the surface is, m.
     pub thickness_m: Option<f64>,
@@ -37,7 +39,7 @@ pub struct Making {
     pub wanted: Wanted,
 }
 
-/// How fine a surface is filled: what a solve may cost, which grows with about the square.
+/// Fineness of the filling of a surface: what a solve may cost, which grows with about the square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fineness {
     /// Unknowns of a mesh that neither walls nor waves want finer.
@@ -74,7 +76,7 @@ pub struct SolvedBody {
 }
 
 impl SolvedBody {
-    /// The same shape `factor` times as large, of another stiffness and density: exact, without a new solve.
+    /// Shape `factor` times as large, of another stiffness and density: exact, without a new solve.
     ///
     /// f ∝ √(E/ρ)/s, φ ∝ (ρ s³)^−½. Poisson's ratio stays; another one needs a solve.
     #[must_use]
@@ -95,13 +97,13 @@ impl SolvedBody {
 /// Makes a body of a mesh; `progress` hears the part done, 0 to 1.
 ///
 /// # Errors
-/// When the mesh is no body (open, empty, in parts, with walls too thin), a number is out of its range, or the modes cannot be
-/// solved for.
+/// When the mesh is no body (open, empty, in parts, with walls too thin), a number is out of its
+/// range, or the modes cannot be solved for.
 pub fn make(mesh: Mesh, making: &Making, progress: &mut dyn FnMut(f64)) -> Result<SolvedBody, ShapeError> {
     make_as_fine_as(mesh, making, &Fineness::FULL, progress)
 }
 
-/// The same as fine as is told, where the mesh is a surface; a solid is solved as it is.
+/// Solves as fine as is told, where the mesh is a surface; a solid is solved as it is.
 ///
 /// # Errors
 /// Those of [`make`].
@@ -181,7 +183,8 @@ fn closed(
     surface.thickened(thickness_m).joined(Cracks::Hair, told)?.closed(told)
 }
 
-/// Fills a surface at the spacing that walls and waves want, and once more where the highest mode turns out shorter.
+/// Fills a surface at the spacing that walls and waves want, and once more where the highest mode
+/// turns out shorter.
 fn from_surface(
     body: &Body,
     material: &Elastic,
@@ -253,7 +256,8 @@ fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Ve
 }
 
 impl Making {
-    /// Metres to one unit of the mesh; a size that few objects have is told where nothing was said about it.
+    /// Metres to one unit of the mesh; a size that few objects have is told where nothing was said
+    /// about it.
     fn scale(&self, mesh: &Mesh, told: &mut Vec<String>) -> Result<f64, ShapeError> {
         let side = longest_side(mesh.points());
         if let Some(size_m) = self.size_m {
@@ -280,7 +284,8 @@ impl Making {
     }
 }
 
-/// A given mesh is solved as it is; where its longest edge is long against the shortest wave, that is told.
+/// A given mesh is solved as it is; where its longest edge is long against the shortest wave, that
+/// is told.
 fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, told: &mut Vec<String>) {
     let shear_m = material.shear_wave_m(top_hz);
     let edge = |t: &[u32; 4]| {

@@ -1,15 +1,17 @@
 //! Curved faces of tetrahedra of higher order, cut into flat triangles.
 //!
-//! A face with nodes in the middles of its edges is x(λ) = Σ λ_i (2 λ_i − 1) x_i + Σ 4 λ_i λ_j x_ij. Of cubic elements, whose
-//! edges have two nodes each, the middle of an edge is (9 (a + b) − (i + j)) / 16. The elements are solved with straight
-//! edges; `facets` moves their corners until the body has the volume that the curved faces enclose.
+//! A face with nodes in the middles of its edges is x(λ) = Σ λ_i (2 λ_i − 1) x_i + Σ 4 λ_i λ_j
+//! x_ij. Of cubic elements, whose edges have two nodes each, the middle of an edge is (9 (a + b) −
+//! (i + j)) / 16. The elements are solved with straight edges; `facets` moves their corners until
+//! the body has the volume that the curved faces enclose.
 
 use crate::surface_mesh::SurfaceMesh;
 use crate::vector::{Vec3, add_scaled, distance};
 use crate::volume_mesh::VolumeMesh;
 use std::collections::HashMap;
 
-/// Pieces of an edge: the triangles stray from the face by a sixteenth of what it strays from its corners' plane.
+/// Pieces of an edge: the triangles stray from the face by a sixteenth of what it strays from its
+/// corners' plane.
 const PIECES: usize = 4;
 /// An edge is curved when its middle strays by more than this part of its length.
 const CURVED: f64 = 1e-6;

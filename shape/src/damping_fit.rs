@@ -1,14 +1,15 @@
 //! Damping of a material from the modes of a recording: (α, η, β) ≥ 0 of d = (α + ηω + βω²)/2.
 //!
-//! The sum of |ln(d_law / d_recorded)| is least: a mode that a fit has invented or cut short counts little more than its
-//! neighbours, and a factor of two too long weighs as much as one too short.
+//! The sum of |ln(d_law / d_recorded)| is least: a mode that a fit has invented or cut short counts
+//! little more than its neighbours, and a factor of two too long weighs as much as one too short.
 //!
-//! Learned from are resonances, not terms: a fit spends several modes on one resonance (an attack, a room, a beat), and the short ones among
-//! them say nothing of the material. The strongest within three half-widths stands for them, and what lies 40 dB below the
-//! strongest of all is left out.
+//! Learned from are resonances, not terms: a fit spends several modes on one resonance (an attack,
+//! a room, a beat), and the short ones among them say nothing of the material. The strongest within
+//! three half-widths stands for them, and what lies 40 dB below the strongest of all is left out.
 //!
-//! What such a law can do is little: decays of neighbouring modes of one real body differ by factors, because supports, air and the shape of
-//! a mode take part. It gets the middle right, not each mode.
+//! What such a law can do is little: decays of neighbouring modes of one real body differ by
+//! factors, because supports, air and the shape of a mode take part. It gets the middle right, not
+//! each mode.
 
 use asperity_dsp::damping::Damping;
 use asperity_dsp::mode::Mode;
@@ -27,7 +28,8 @@ fn energy(mode: &Mode) -> f64 {
 
 /// The strongest mode of each resonance of a recording, the strongest resonance first.
 ///
-/// Modes without damping, frequency or amplitude are left out; see the head of this file for what counts as one resonance.
+/// Modes without damping, frequency or amplitude are left out; see the head of this file for what
+/// counts as one resonance.
 #[must_use]
 pub fn resonances(modes: &[Mode]) -> Vec<Mode> {
     let mut damped: Vec<&Mode> =

@@ -1,7 +1,8 @@
 //! Delaunay tetrahedralisation of points: no other point lies in the sphere around a tetrahedron.
 //!
-//! Points are put in one after the other; the tetrahedra whose spheres hold the new one are taken out and the hole is filled
-//! from it (Bowyer 1981, Watson 1981). The signs that decide are exact (Shewchuk 1997, through the crate `robust`).
+//! Points are put in one after the other; the tetrahedra whose spheres hold the new one are taken
+//! out and the hole is filled from it (Bowyer 1981, Watson 1981). The signs that decide are exact
+//! (Shewchuk 1997, through the crate `robust`).
 
 use crate::vector::{Vec3, bounds, distance, longest_side};
 use robust::{Coord3D, insphere, orient3d};
@@ -23,7 +24,7 @@ pub struct Delaunay {
     smallest: f64,
 }
 
-/// What a new point takes out: tetrahedra, and the faces around them with what lies beyond each.
+/// Cavity of a new point: tetrahedra, and the faces around them with what lies beyond each.
 struct Hole {
     inside: Vec<u32>,
     faces: Vec<([u32; 3], u32)>,
@@ -33,7 +34,8 @@ fn coord(p: Vec3) -> Coord3D<f64> {
     Coord3D { x: p[0], y: p[1], z: p[2] }
 }
 
-/// The faces of a tetrahedron of positive orientation, each so that the corner it faces lies on its positive side.
+/// The faces of a tetrahedron of positive orientation, each so that the corner it faces lies on its
+/// positive side.
 const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 impl Delaunay {
@@ -117,7 +119,8 @@ impl Delaunay {
                 }
                 next += 1;
             }
-            // Every face must be seen from the point; where one is edge-on, what lies behind it goes as well.
+            // Every face must be seen from the point; where one is edge-on, what lies behind it
+            // goes as well.
             let mut faces = Vec::new();
             let mut grown = false;
             for &tet in &inside.clone() {

@@ -1,16 +1,18 @@
 //! Nested dissection: an order of elimination that keeps the Cholesky factor of a solid body small.
 //!
-//! A body is cut in two across its longest extent; the nodes of the cut come last, and each half is cut again. What is eliminated in
-//! one half then never fills the other (George 1973). For n unknowns of a solid the factor grows as n^(4/3) and its work as n², where a minimum-degree
-//! order, which looks at neighbours only, loses a factor of two or more; of shells and bars that order is as good or better, so both are
-//! tried (`factor`).
+//! A body is cut in two across its longest extent; the nodes of the cut come last, and each half is
+//! cut again. What is eliminated in one half then never fills the other (George 1973). For n
+//! unknowns of a solid the factor grows as n^(4/3) and its work as n², where a minimum-degree
+//! order, which looks at neighbours only, loses a factor of two or more; of shells and bars that
+//! order is as good or better, so both are tried (`factor`).
 
 use crate::vector::Vec3;
 
 /// Parts of so few nodes are not cut any more.
 const LEAF: usize = 24;
-/// Cuts that are tried, as shares of the nodes below them: so many, from this one to as much above a half. The one with the fewest nodes on
-/// it is taken; of several as small, the one nearest to the middle.
+/// Cuts that are tried, as shares of the nodes below them: so many, from this one to as much above
+/// a half. The one with the fewest nodes on it is taken; of several as small, the one nearest to
+/// the middle.
 const TRIED: usize = 21;
 const LEAST_SHARE: f64 = 0.4;
 
@@ -58,7 +60,8 @@ enum Side {
     Cut,
 }
 
-/// The nodes in the order in which they are eliminated; `pairs` are the places of the matrix, each told once.
+/// The nodes in the order in which they are eliminated; `pairs` are the places of the matrix, each
+/// told once.
 pub fn order(nodes: &[Vec3], pairs: &mut dyn Iterator<Item = (u32, u32)>) -> Vec<u32> {
     let graph = Graph::of(nodes.len(), pairs);
     let mut side = vec![Side::Elsewhere; nodes.len()];

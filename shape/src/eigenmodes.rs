@@ -1,7 +1,7 @@
 //! Modes of vibration of a free body: frequencies and mass-normalised motions, none missed.
 //!
-//! Lanczos finds them from below; the inertia of K − ω²M above the last one counts how many there must be
-//! (`factor`), and the residual ‖Kφ − ω²Mφ‖ / ‖Kφ‖ of each is checked.
+//! Lanczos finds them from below; the inertia of K − ω²M above the last one counts how many there
+//! must be (`factor`), and the residual ‖Kφ − ω²Mφ‖ / ‖Kφ‖ of each is checked.
 
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
@@ -42,8 +42,8 @@ pub struct Eigenmodes {
 /// Solves for the modes of a body; `progress` hears the part done, 0 to 1.
 ///
 /// # Errors
-/// When memory runs out, more than [`MOST_MODES`] modes are below the frequency asked for, the body hangs together by points
-/// only, or a mode does not reach its accuracy.
+/// When memory runs out, more than [`MOST_MODES`] modes are below the frequency asked for, the body
+/// hangs together by points only, or a mode does not reach its accuracy.
 pub fn solve(
     system: &System,
     material: &Elastic,
@@ -67,8 +67,8 @@ pub fn solve(
             format!("at most {MOST_MODES} are solved: lower it, or give --max-modes"),
         ));
     }
-    // A hundredth of what a wave running along the body does in a round: far below the modes of all but thin bodies, and not
-    // so far that the factor loses its digits.
+    // A hundredth of what a wave running along the body does in a round: far below the modes of all
+    // but thin bodies, and not so far that the factor loses its digits.
     let slow_hz = 0.01 * material.bar_speed_m_s() / longest_side(&system.nodes);
     let sigma = -(TAU * slow_hz).powi(2);
     let found = lowest(system, &symbolic, sigma, count, &mut |done| progress(0.35 + 0.45 * done))?;
@@ -90,7 +90,8 @@ pub fn solve(
     checked(system, modes, count, slow_hz)
 }
 
-/// The frequency between mode `count` and its neighbour above, in the widest relative gap of the last few.
+/// The frequency between mode `count` and its neighbour above, in the widest relative gap of the
+/// last few.
 fn gap_hz(frequency_hz: &[f64], count: usize) -> f64 {
     let last = frequency_hz.len().min(count + 3);
     let first = count.saturating_sub(1).min(last.saturating_sub(1));

@@ -1,7 +1,9 @@
-//! Elastic constants of a uniform, isotropic material, and how size and stiffness move the modes of a shape.
+//! Elastic constants of a uniform, isotropic material, and how size and stiffness move the modes of
+//! a shape.
 //!
-//! With Poisson's ratio and the shape kept, a solved body needs no new solve: f ∝ √(E/ρ)/s and, because the shapes are
-//! mass-normalised, φ ∝ (ρ s³)^−½ (dimensional analysis of Navier's equation).
+//! With Poisson's ratio and the shape kept, a solved body needs no new solve: f ∝ √(E/ρ)/s and,
+//! because the shapes are mass-normalised, φ ∝ (ρ s³)^−½ (dimensional analysis of Navier's
+//! equation).
 
 use crate::error::ShapeError;
 

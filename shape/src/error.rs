@@ -6,9 +6,9 @@
 pub struct ShapeError {
     /// Which file, line or field.
     pub at: String,
-    /// What is wrong with it.
+    /// Fault of it.
     pub what: String,
-    /// What would be accepted.
+    /// Accepted values.
     pub right: String,
 }
 
@@ -18,7 +18,7 @@ impl ShapeError {
         Self { at: at.into(), what: what.into(), right: right.into() }
     }
 
-    /// The same error inside a file: its path comes first.
+    /// Error inside a file: its path comes first.
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
         self.at = if self.at.is_empty() { outer.to_owned() } else { format!("{outer}: {}", self.at) };

@@ -1,23 +1,24 @@
-//! Flat faces on a round body: their corners lie on the surface, so the faces between them cut volume off.
+//! Flat faces on a round body: their corners lie on the surface, so the faces between them cut
+//! volume off.
 //!
-//! A face whose middle lies s below the surface loses ¾ s on the mean (for a face around its centre the sagitta falls with the
-//! square of the distance). Moving corners out by that much gives every part of the body its volume back; the error of a
-//! ball's pitches falls tenfold.
+//! A face whose middle lies s below the surface loses ¾ s on the mean (for a face around its centre
+//! the sagitta falls with the square of the distance). Moving corners out by that much gives every
+//! part of the body its volume back; the error of a ball's pitches falls tenfold.
 
 use crate::triangle_tree::TriangleTree;
 use crate::triangle_tree::area_vector;
 use crate::vector::{Vec3, add_scaled, distance, dot, mean, sub, unit};
 use crate::volume_mesh::{VolumeMesh, tet_volume_m3};
 
-/// What a face loses on the mean, of what it loses in its middle.
+/// Mean loss of a face, of what it loses in its middle.
 const MEAN_OF_MIDDLE: f64 = 0.75;
 /// Faces whose normals differ by less than this cosine belong to one side of an edge.
 const SAME_SIDE: f64 = 0.7;
 /// A tetrahedron keeps at least this part of its volume.
 const KEPT: f64 = 0.4;
 
-/// Moves the corners of a mesh outwards (on hollow sides: the other way) until its faces lie as much above the surface as
-/// below it.
+/// Moves the corners of a mesh outwards (on hollow sides: the other way) until its faces lie as
+/// much above the surface as below it.
 pub fn round_out(mesh: &mut VolumeMesh, surface: &TriangleTree) {
     let mut sides: Vec<Vec<(Vec3, f64, f64)>> = vec![Vec::new(); mesh.points.len()];
     for face in mesh.boundary() {

@@ -1,8 +1,8 @@
 //! Sparse Cholesky factor of K − σM, and the inertia that counts the modes below a frequency.
 //!
-//! Below all modes (σ < 0) the matrix is positive definite and K − σM = L Lᵀ. Above some, K − σM = L D Lᵀ, and by
-//! Sylvester's law as many numbers of D are negative as there are modes below σ (Parlett, The Symmetric Eigenvalue
-//! Problem, ch. 3).
+//! Below all modes (σ < 0) the matrix is positive definite and K − σM = L Lᵀ. Above some, K − σM =
+//! L D Lᵀ, and by Sylvester's law as many numbers of D are negative as there are modes below σ
+//! (Parlett, The Symmetric Eigenvalue Problem, ch. 3).
 
 use crate::error::ShapeError;
 use crate::system::System;
@@ -33,7 +33,8 @@ fn out_of_memory() -> ShapeError {
 }
 
 impl Symbolic {
-    /// Orders the unknowns so that the factor stays small: by minimum degree or by nested dissection, whichever fills less.
+    /// Orders the unknowns so that the factor stays small: by minimum degree or by nested
+    /// dissection, whichever fills less.
     ///
     /// # Errors
     /// When memory runs out.
@@ -65,7 +66,8 @@ impl Symbolic {
     /// Factors K − σM for a σ below all modes.
     ///
     /// # Errors
-    /// When memory runs out, or the matrix is not positive definite (an element so flat that rounding wins).
+    /// When memory runs out, or the matrix is not positive definite (an element so flat that
+    /// rounding wins).
     pub fn factor(&self, system: &System, sigma: f64) -> Result<Factor<'_>, ShapeError> {
         let (starts, rows, values) = system.shifted(sigma);
         let n = system.unknowns();
@@ -91,7 +93,7 @@ impl Symbolic {
         Ok(Factor { symbolic: &self.0, values: factor })
     }
 
-    /// How many modes, the six rigid ones included, lie below `frequency_hz`.
+    /// Number of modes, the six rigid ones included, below `frequency_hz`.
     ///
     /// # Errors
     /// When memory runs out, or a mode lies exactly there.

@@ -1,4 +1,5 @@
-//! Sharp edges and corners of a surface: where a mesh of a body must have edges and corners of its own.
+//! Sharp edges and corners of a surface: where a mesh of a body must have edges and corners of its
+//! own.
 //!
 //! A box cut by elements that round its edges off errs by several per cent in its pitches.
 

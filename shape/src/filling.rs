@@ -1,10 +1,12 @@
-//! Volume mesh from a surface: points at a spacing, Delaunay tetrahedra over them, and of these the ones inside.
+//! Volume mesh from a surface: points at a spacing, Delaunay tetrahedra over them, and of these the
+//! ones inside.
 //!
-//! Corners and sharp edges are points and edges of the mesh from the beginning, and one layer of elements fills a wall
-//! however thin against the spacing. Isosurface stuffing (Labelle & Shewchuk 2007), which cuts a lattice instead, rounds
-//! edges off and needs cells finer than the wall: many times the unknowns for a mug. What is inside is decided by the
-//! generalised winding number, which open and self-crossing meshes have as well. Where faces of the mesh stray from the
-//! surface or a sharp edge is crossed, points are added (Boissonnat & Oudot 2005).
+//! Corners and sharp edges are points and edges of the mesh from the beginning, and one layer of
+//! elements fills a wall however thin against the spacing. Isosurface stuffing (Labelle & Shewchuk
+//! 2007), which cuts a lattice instead, rounds edges off and needs cells finer than the wall: many
+//! times the unknowns for a mug. What is inside is decided by the generalised winding number, which
+//! open and self-crossing meshes have as well. Where faces of the mesh stray from the surface or a
+//! sharp edge is crossed, points are added (Boissonnat & Oudot 2005).
 
 use crate::delaunay::Delaunay;
 use crate::error::ShapeError;
@@ -20,7 +22,7 @@ use std::collections::{HashMap, HashSet};
 const LONGEST_PER_WALL: f64 = 1.4;
 /// Faces may stray this part of the spacing from the surface.
 const STRAY: f64 = 0.12;
-/// How often points are added.
+/// Number of rounds in which points are added.
 const ROUNDS: usize = 8;
 /// Tetrahedra flatter than this (6√2 V / edge³) are taken off the surface.
 const FLAT: f64 = 0.02;
@@ -284,7 +286,8 @@ fn roundness(corners: [Vec3; 4]) -> f64 {
     6.0 * std::f64::consts::SQRT_2 * tet_volume_m3(corners) / square.powf(1.5)
 }
 
-/// Takes flat tetrahedra off the surface, as long as that uncovers no further point: two faces outside become the two others.
+/// Takes flat tetrahedra off the surface, as long as that uncovers no further point: two faces
+/// outside become the two others.
 fn peel(tets: &mut Vec<[u32; 4]>, points: &[Vec3]) {
     for _ in 0..6 {
         let mut outside: HashMap<usize, usize> = HashMap::new();

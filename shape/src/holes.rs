@@ -6,14 +6,14 @@ use crate::triangle_tree::area_vector;
 use crate::vector::{Vec3, add_scaled, cross, dot, sub, unit};
 use rustc_hash::FxHashMap;
 
-/// What closes the holes of a surface.
+/// Triangles that close the holes of a surface.
 #[derive(Debug, Default)]
 pub(crate) struct Caps {
     /// Triangles over holes, each hole a fan around its middle.
     pub caps: Vec<[Vec3; 3]>,
     /// Single triangles that were lost.
     pub lost: Vec<[Vec3; 3]>,
-    /// How many holes there are.
+    /// Number of holes.
     pub holes: usize,
 }
 
@@ -34,8 +34,8 @@ impl SurfaceMesh {
         made
     }
 
-    /// Rims of the holes, anticlockwise seen from outside. Rims that share a corner are told apart by turning left there as
-    /// sharply as possible: the hole lies on the left.
+    /// Rims of the holes, anticlockwise seen from outside. Rims that share a corner are told apart
+    /// by turning left there as sharply as possible: the hole lies on the left.
     fn rims(&self) -> Vec<Vec<u32>> {
         let open = open_edges(&edge_uses(&self.triangles));
         // A hole's rim runs against the triangles beside it.

@@ -1,9 +1,10 @@
 //! Shift-invert block Lanczos: the lowest modes of K φ = ω² M φ.
 //!
-//! The operator A = (K − σM)⁻¹ M has the eigenvalues θ = 1/(ω² − σ), largest for the lowest modes, and is symmetric in the
-//! inner product of M. Blocks of several vectors find modes that coincide; every new block is made orthogonal to the whole
-//! basis, twice, so the projection H = Vᵀ M A V is exact to rounding (Grimes, Lewis & Simon 1994). The six rigid motions are
-//! known and kept out from the beginning.
+//! The operator A = (K − σM)⁻¹ M has the eigenvalues θ = 1/(ω² − σ), largest for the lowest modes,
+//! and is symmetric in the inner product of M. Blocks of several vectors find modes that coincide;
+//! every new block is made orthogonal to the whole basis, twice, so the projection H = Vᵀ M A V is
+//! exact to rounding (Grimes, Lewis & Simon 1994). The six rigid motions are known and kept out
+//! from the beginning.
 
 use crate::error::ShapeError;
 use crate::factor::Factor;
@@ -12,8 +13,8 @@ use faer::dyn_stack::MemBuffer;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par, Side};
 
-/// Vectors a block: modes that coincide come in twos and threes, on a ball in fives and sevens, of which rounding and the
-/// count of modes find the rest.
+/// Vectors a block: modes that coincide come in twos and threes, on a ball in fives and sevens, of
+/// which rounding and the count of modes find the rest.
 const BLOCK: usize = 4;
 /// A mode is found when its residual is below this part of its θ.
 const CONVERGED: f64 = 1e-10;
@@ -29,7 +30,7 @@ pub struct Lanczos<'a> {
     used: usize,
     /// Columns of H = Vᵀ M A V from the top to their block.
     projection: Vec<Vec<f64>>,
-    /// What couples the last block to the next one.
+    /// Coupling of the last block to the next one.
     coupling: Mat<f64>,
     seed: u64,
 }
@@ -40,7 +41,7 @@ pub struct Ritz {
     pub theta: Vec<f64>,
     /// Columns: coefficients of the basis.
     pub vectors: Mat<f64>,
-    /// Whether each has converged.
+    /// True for each that has converged.
     pub converged: Vec<bool>,
 }
 
@@ -121,8 +122,9 @@ impl<'a> Lanczos<'a> {
 
     /// The first `count` Ritz vectors as motions of the nodes, mass-normalised.
     ///
-    /// Each is V s + W C s_last / θ with the block W that follows the basis, which is A V s / θ: one more inverse iteration
-    /// at the cost of a product (Nour-Omid, Parlett, Ericsson & Jensen 1987). It takes the fast waves out of what is left.
+    /// Each is V s + W C s_last / θ with the block W that follows the basis, which is A V s / θ:
+    /// one more inverse iteration at the cost of a product (Nour-Omid, Parlett, Ericsson & Jensen
+    /// 1987). It takes the fast waves out of what is left.
     pub fn motions(&self, ritz: &Ritz, count: usize) -> Mat<f64> {
         let m = ritz.theta.len();
         let mut motions = Mat::zeros(self.system.unknowns(), count);
@@ -142,10 +144,11 @@ impl<'a> Lanczos<'a> {
         self.basis.as_ref().subcols(0, count)
     }
 
-    /// Adds a block, made orthonormal; gives C and R of block = V C + W R, where W is what was added to the basis V.
+    /// Adds a block, made orthonormal; gives C and R of block = V C + W R, where W is what was
+    /// added to the basis V.
     ///
-    /// Orthogonal to the basis, then in itself, and both again: where the columns of a block have become alike, taking them
-    /// apart brings back what the first pass has taken away.
+    /// Orthogonal to the basis, then in itself, and both again: where the columns of a block have
+    /// become alike, taking them apart brings back what the first pass has taken away.
     fn append(&mut self, mut block: Mat<f64>) -> (Mat<f64>, Mat<f64>) {
         let n = self.system.unknowns();
         if self.basis.ncols() < self.used + BLOCK {

@@ -1,12 +1,14 @@
-//! Bodies from their shape: a mesh and a material become modes that ring wherever the body is struck.
+//! Bodies from their shape: a mesh and a material become modes that ring wherever the body is
+//! struck.
 //!
 //! ```text
 //! mesh_file ─► surface_mesh (repair, holes) ─► filling (sampling, delaunay, facets) ─► volume_mesh
 //!                                                                                   │
 //! damping_fit        surface_field ◄─ eigenmodes (lanczos, factor) ◄─ system (quadratic_tet)
 //! ```
-//! Offline and in f64; no game links it. Materials are uniform and isotropic: wood, which is neither, comes out of tune. Levels are
-//! relative: nothing here has been compared with a measured sound pressure.
+//! Offline and in f64; no game links it. Materials are uniform and isotropic: wood, which is
+//! neither, comes out of tune. Levels are relative: nothing here has been compared with a measured
+//! sound pressure.
 
 pub mod body;
 mod curved;

@@ -15,7 +15,8 @@ const SPECK: f64 = 0.01;
 pub enum Mesh {
     /// Cut into tetrahedra.
     Volume(VolumeMesh),
-    /// Cut into tetrahedra with curved faces: their corners, and the surface they stand for, finely cut.
+    /// Cut into tetrahedra with curved faces: their corners, and the surface they stand for, finely
+    /// cut.
     Curved(VolumeMesh, SurfaceMesh),
     /// Its surface only.
     Surface(SurfaceMesh),
@@ -59,7 +60,8 @@ impl Mesh {
         .used()
     }
 
-    /// Moves the middle of its box to the origin, where sums of products are exact; gives where it was.
+    /// Moves the middle of its box to the origin, where sums of products are exact; gives where it
+    /// was.
     pub(crate) fn centre(&mut self) -> Vec3 {
         let (low, high) = bounds(self.points()).unwrap_or_default();
         let middle: Vec3 = std::array::from_fn(|c| 0.5 * (low[c] + high[c]));
@@ -136,7 +138,7 @@ impl SurfaceMesh {
         pieces
     }
 
-    /// How many pieces hang together by points.
+    /// Number of pieces that hang together by points.
     pub(crate) fn pieces_count(&self) -> usize {
         self.pieces().len()
     }
@@ -147,7 +149,8 @@ impl SurfaceMesh {
         keep_used(&mut self.points, &mut self.triangles);
     }
 
-    /// Leaves small pieces out whose box is apart from that of the largest: they would count as its size.
+    /// Leaves small pieces out whose box is apart from that of the largest: they would count as its
+    /// size.
     pub(crate) fn leave_specks_out(&mut self, told: &mut Vec<String>) {
         let pieces = self.pieces();
         let Some((body, others)) = pieces.split_first() else { return };

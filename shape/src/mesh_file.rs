@@ -1,4 +1,5 @@
-//! Meshes as files: `.msh` (Gmsh 2.2 and 4.1), `.obj`, `.stl`, `.ply`, `.glb`, `.gltf`; what a file holds, by its ending.
+//! Meshes as files: `.msh` (Gmsh 2.2 and 4.1), `.obj`, `.stl`, `.ply`, `.glb`, `.gltf`; what a file
+//! holds, by its ending.
 
 use crate::error::ShapeError;
 use crate::mesh::Mesh;
@@ -12,13 +13,14 @@ const LARGEST: u64 = 1 << 30;
 /// Reads a mesh.
 ///
 /// # Errors
-/// When the file cannot be read, is not what its ending says, or ends too early; the error names file and line.
+/// When the file cannot be read, is not what its ending says, or ends too early; the error names
+/// file and line.
 pub fn load(path: &Path) -> Result<Mesh, ShapeError> {
     load_part(path, None)
 }
 
-/// Reads a mesh, or the part of it that a name in the file says (of an OBJ's objects and groups, an STL's solids, a glTF's
-/// nodes and meshes); `largest` is the part of the greatest volume.
+/// Reads a mesh, or the part of it that a name in the file says (of an OBJ's objects and groups, an
+/// STL's solids, a glTF's nodes and meshes); `largest` is the part of the greatest volume.
 ///
 /// # Errors
 /// Those of [`load`], and when there is no such part.
@@ -29,7 +31,8 @@ pub fn load_part(path: &Path, wanted: Option<&str>) -> Result<Mesh, ShapeError> 
     wanted.map_or(Ok(mesh.clone()), |wanted| part(mesh, &names, wanted).map_err(|error| error.within(&name)))
 }
 
-/// Reads a mesh that was loaded already; `path` is what it is called, and its ending says what it is.
+/// Reads a mesh that was loaded already; `path` is what it is called, and its ending says what it
+/// is.
 ///
 /// # Errors
 /// When the bytes are not what the ending says, or end too early; the error names file and line.

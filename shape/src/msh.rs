@@ -1,7 +1,8 @@
 //! Gmsh `.msh`, versions 2.2 and 4.1, ASCII and binary (Gmsh reference manual, "MSH file format").
 //!
-//! Tetrahedra make a volume; the nodes between corners of those of higher order say how their faces curve (`curved`). A file
-//! with triangles only is a surface. Node tags may have gaps and any order.
+//! Tetrahedra make a volume; the nodes between corners of those of higher order say how their faces
+//! curve (`curved`). A file with triangles only is a surface. Node tags may have gaps and any
+//! order.
 
 use crate::curved::{self, Between, between};
 use crate::error::ShapeError;
@@ -92,7 +93,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What the sections hold.
+/// Contents of the sections.
 #[derive(Default)]
 struct Found {
     points: Vec<Vec3>,
@@ -116,7 +117,8 @@ fn nodes_of(kind: i64) -> Option<usize> {
 /// Reads a `.msh` file.
 ///
 /// # Errors
-/// When it is cut short, of another version, holds solids other than tetrahedra, or names nodes that are not there.
+/// When it is cut short, of another version, holds solids other than tetrahedra, or names nodes
+/// that are not there.
 pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
     let mut reader = Reader { bytes, at: 0, binary: false, swapped: false };
     let mut version = None;

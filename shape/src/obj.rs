@@ -1,5 +1,5 @@
-//! Wavefront OBJ: `v` and `f` lines, polygons cut into triangles, and `o` and `g` as names of parts; everything else is left
-//! out.
+//! Wavefront OBJ: `v` and `f` lines, polygons cut into triangles, and `o` and `g` as names of
+//! parts; everything else is left out.
 
 use crate::error::ShapeError;
 use crate::parts::Names;

@@ -1,11 +1,11 @@
 //! Quadratic tetrahedron: stiffness and mass of a straight-sided element with ten nodes.
 //!
-//! With the barycentric coordinates λ_i and their constant gradients g_i, corner nodes have N_i = λ_i(2λ_i − 1) and
-//! mid-edge nodes N_ij = 4 λ_i λ_j. Stiffness couples nodes a and b by
-//! ∫ λ ∇N_a ∇N_bᵀ + μ (∇N_b ∇N_aᵀ + (∇N_a·∇N_b) 1) dV, which the four-point rule integrates exactly because gradients
-//! are linear; mass by ρ ∫ N_a N_b dV from ∫ Π λ_i^e_i dV = 6 V Π e_i! / (Σ e_i + 3)!.
-//! Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1, ch. 4 and 6. Linear tetrahedra lock in bending and are
-//! not offered.
+//! With the barycentric coordinates λ_i and their constant gradients g_i, corner nodes have N_i =
+//! λ_i(2λ_i − 1) and mid-edge nodes N_ij = 4 λ_i λ_j. Stiffness couples nodes a and b by ∫ λ ∇N_a
+//! ∇N_bᵀ + μ (∇N_b ∇N_aᵀ + (∇N_a·∇N_b) 1) dV, which the four-point rule integrates exactly because
+//! gradients are linear; mass by ρ ∫ N_a N_b dV from ∫ Π λ_i^e_i dV = 6 V Π e_i! / (Σ e_i + 3)!.
+//! Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1, ch. 4 and 6. Linear tetrahedra
+//! lock in bending and are not offered.
 
 use crate::elastic::Elastic;
 use crate::vector::{Vec3, cross, dot, sub};
@@ -156,7 +156,8 @@ mod tests {
 
     #[test]
     fn the_mass_of_a_quadratic_motion_is_the_closed_integral() {
-        // ∫ (λ₀ λ₁)² dV = 6 V · 2!·2!/7! = V/210; λ₀λ₁ is a quarter of the shape function of edge 0–1.
+        // ∫ (λ₀ λ₁)² dV = 6 V · 2!·2!/7! = V/210; λ₀λ₁ is a quarter of the shape function of edge
+        // 0–1.
         assert!((mass_share_420(4, 4) / 420.0 / 16.0 - 1.0 / 210.0).abs() < 1e-15);
         let total: f64 = (0..NODES).flat_map(|a| (0..NODES).map(move |b| mass_share_420(a, b))).sum();
         assert_eq!(total, 420.0);

@@ -1,4 +1,5 @@
-//! Repair of a surface as files have it: one order, joined points, needles taken out, cracks closed.
+//! Repair of a surface as files have it: one order, joined points, needles taken out, cracks
+//! closed.
 //!
 //! | step | what it does |
 //! |---|---|
@@ -7,8 +8,9 @@
 //! | needles | a triangle lower than that is left out; what it joined is joined again by the next step |
 //! | cracks | where edges have one triangle, corners are joined and edges cut at the corners that lie on them, at growing reach |
 //!
-//! A crack is closed only where that leaves fewer open edges, and corners are joined only well within the shortest edge
-//! that ends there, so that small holes and thin slots of a fine mesh stay what they are.
+//! A crack is closed only where that leaves fewer open edges, and corners are joined only well
+//! within the shortest edge that ends there, so that small holes and thin slots of a fine mesh stay
+//! what they are.
 
 use crate::surface_mesh::SurfaceMesh;
 use crate::triangle_tree::area_vector;
@@ -16,18 +18,20 @@ use crate::vector::{Vec3, add_scaled, distance, dot, length, longest_side, sub};
 use crate::volume_mesh::sorted;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Points nearer than this part of the longest side are one, and triangles lower than it are needles.
+/// Points nearer than this part of the longest side are one, and triangles lower than it are
+/// needles.
 const JOINED: f64 = 1e-6;
 /// Widths of cracks that are closed one after the other, as parts of the longest side.
 const CRACKS: [f64; 4] = [JOINED, 1e-5, 1e-4, 1e-3];
-/// Corners beside a crack are joined when nearer than this part of the shortest edge that ends there.
+/// Corners beside a crack are joined when nearer than this part of the shortest edge that ends
+/// there.
 const WITHIN_EDGE: f64 = 0.3;
 /// Most open edges that are searched for cracks: beyond it is no crack, but a surface in pieces.
 const MOST_OPEN_EDGES: usize = 300_000;
-/// How often the edges of a triangle are cut: each has three.
+/// Number of cuts of the edges of a triangle: each has three.
 const CUTS: usize = 3;
 
-/// How wide cracks may be that are closed.
+/// Width of cracks that are closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cracks {
     /// Up to a thousandth of the longest side: the surface shall enclose something.
@@ -99,7 +103,8 @@ impl Grid {
 }
 
 impl SurfaceMesh {
-    /// Points that triangles use, each place once and sorted by place, and the triangles sorted by them.
+    /// Points that triangles use, each place once and sorted by place, and the triangles sorted by
+    /// them.
     #[must_use]
     pub fn in_order(mut self) -> Self {
         let mut used = vec![false; self.points.len()];

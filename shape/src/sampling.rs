@@ -1,7 +1,7 @@
 //! Points of a surface at a given spacing: corners, then sharp edges, then faces, then the inside.
 //!
-//! On faces a point is taken when no other is nearer than the spacing (Poisson-disk sampling by dart throwing); the two
-//! sides of a thin wall do not count as near, because their normals differ.
+//! On faces a point is taken when no other is nearer than the spacing (Poisson-disk sampling by
+//! dart throwing); the two sides of a thin wall do not count as near, because their normals differ.
 
 use crate::feature_lines::{FeatureLine, feature_lines};
 use crate::surface_mesh::SurfaceMesh;
@@ -11,7 +11,8 @@ use rustc_hash::FxHashMap;
 
 /// Points on faces keep this part of the spacing from points on sharp edges.
 const FROM_EDGE: f64 = 0.75;
-/// Points on sharp edges that are nearer than this part of the spacing to another are left out: edges finer than the mesh.
+/// Points on sharp edges that are nearer than this part of the spacing to another are left out:
+/// edges finer than the mesh.
 const FINEST: f64 = 0.2;
 /// Points inside keep this part of the spacing from the surface.
 const INSET: f64 = 0.6;
@@ -31,7 +32,7 @@ impl Dice {
         Self(seed | 1)
     }
 
-    /// Of its own for each cell of a grid (SplitMix64's finaliser).
+    /// Seed of its own for each cell of a grid (SplitMix64's finaliser).
     fn of_cell(cell: [u64; 3]) -> Self {
         let mixed = cell.into_iter().fold(0x9e37_79b9_7f4a_7c15_u64, |seed, x| {
             let mut z = (seed ^ x).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -69,7 +70,8 @@ impl Cells {
         self.cells.entry(key).or_default().push((p, normals));
     }
 
-    /// Whether a point with a similar normal (any, where none is given) lies nearer than `reach`.
+    /// Tests whether a point with a similar normal (any, where none is given) lies nearer than
+    /// `reach`.
     fn crowded(&self, p: Vec3, normal: Option<Vec3>, reach: f64) -> bool {
         let [x, y, z] = self.key(p);
         let n = (reach / self.width).ceil() as i64;
@@ -89,7 +91,8 @@ impl Cells {
 pub struct Samples {
     /// On the surface.
     pub surface: Vec<Vec3>,
-    /// Neighbours along sharp edges, which the mesh must join: numbers of points, the line, and where on it both are.
+    /// Neighbours along sharp edges, which the mesh must join: numbers of points, the line, and
+    /// where on it both are.
     pub segments: Vec<(usize, usize, usize, f64, f64)>,
     /// The sharp lines.
     pub lines: Vec<FeatureLine>,
@@ -97,7 +100,7 @@ pub struct Samples {
     pub inside: Vec<Vec3>,
 }
 
-/// How thick the walls are at evenly spread places, thinnest first, m.
+/// Thickness of the walls at evenly spread places, thinnest first, m.
 #[must_use]
 pub fn wall_thicknesses_m(mesh: &SurfaceMesh, tree: &TriangleTree, side: f64) -> Vec<f64> {
     let mut dice = Dice::new(11);
@@ -163,7 +166,8 @@ pub fn sample(mesh: &SurfaceMesh, tree: &TriangleTree, spacing_m: f64) -> Sample
     samples
 }
 
-/// Whether a place of the surface divides inside from outside; where bodies overlap, it does not.
+/// Tests whether a place of the surface divides inside from outside; where bodies overlap, it does
+/// not.
 fn divides(tree: &TriangleTree, p: Vec3, normal: Vec3, spacing_m: f64) -> bool {
     let step = 1e-4 * spacing_m;
     tree.contains(add_scaled(p, -step, normal)) && !tree.contains(add_scaled(p, step, normal))
@@ -237,8 +241,9 @@ fn put_on_faces(
     cells.cells.extend(on_lines.cells.drain());
 }
 
-/// Cells of half the spacing, of which each is tried once. Boxes of cells that the surface does not reach and that lie
-/// outside are passed over whole, so that the work grows with the body, not with the box around it.
+/// Cells of half the spacing, of which each is tried once. Boxes of cells that the surface does not
+/// reach and that lie outside are passed over whole, so that the work grows with the body, not with
+/// the box around it.
 fn put_inside(samples: &mut Samples, mesh: &SurfaceMesh, tree: &TriangleTree, spacing_m: f64) {
     let Some((low, high)) = bounds(&mesh.points) else { return };
     let mut taken = Cells { width: spacing_m, cells: FxHashMap::default() };

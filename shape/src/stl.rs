@@ -19,7 +19,8 @@ const TELLING: usize = 1000;
 /// When it ends too early, a number does not read or there is no triangle.
 pub fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
     let count = bytes.get(80..HEADER).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
-    // Binary files may begin with `solid`, ASCII ones with a comment or a mark: length and zeros tell.
+    // Binary files may begin with `solid`, ASCII ones with a comment or a mark: length and zeros
+    // tell.
     if let Some(count) = count.filter(|&count| bytes.len() == HEADER + RECORD * count) {
         return binary(bytes, count).map(|mesh| (mesh, Names::default()));
     }

@@ -1,7 +1,8 @@
 //! Shapes of the modes on the surface of a body: what a strike at any place excites.
 //!
-//! A strike of impulse J at p along n̂ gives mode m the velocity φ_m(p)·n̂ J (Φᵀ M Φ = 1). What is heard of it is taken as the
-//! mean square velocity of the surface along its normal, g_m² = ∮ (φ_m·n̂)² dA / A, until radiation is known: relative levels.
+//! A strike of impulse J at p along n̂ gives mode m the velocity φ_m(p)·n̂ J (Φᵀ M Φ = 1). What is
+//! heard of it is taken as the mean square velocity of the surface along its normal, g_m² = ∮
+//! (φ_m·n̂)² dA / A, until radiation is known: relative levels.
 
 use crate::eigenmodes::Eigenmodes;
 use crate::system::System;

@@ -11,7 +11,8 @@ use crate::volume_mesh::find;
 pub const MOST_TRIANGLES: usize = 4_000_000;
 /// Holes whose triangles are more than this part of the whole surface make it an open sheet.
 const LARGEST_HOLES: f64 = 0.09;
-/// Single triangles that are missing were lost; they may be this part of the surface (a box has twelve in all).
+/// Single triangles that are missing were lost; they may be this part of the surface (a box has
+/// twelve in all).
 const LARGEST_LOST: f64 = 0.3;
 /// A part counts as lying inside another when this much of its area does.
 const NESTED: f64 = 0.9;
@@ -52,7 +53,8 @@ impl SurfaceMesh {
         self.all_corners().iter().map(|t| dot(t[0], cross(t[1], t[2])) / 6.0).sum()
     }
 
-    /// Joins points, leaves out triangles without area and doubled ones, closes cracks, and turns each part one way.
+    /// Joins points, leaves out triangles without area and doubled ones, closes cracks, and turns
+    /// each part one way.
     ///
     /// # Errors
     /// When a number is not finite or nothing is left.
@@ -172,7 +174,8 @@ impl SurfaceMesh {
         Ok(rejoined)
     }
 
-    /// Outer parts enclose a positive volume; a part inside another that is turned inwards is a cavity and stays.
+    /// Outer parts enclose a positive volume; a part inside another that is turned inwards is a
+    /// cavity and stays.
     fn turn_parts_outwards(&mut self, told: &mut Vec<String>) {
         let part_of = self.parts();
         let mut triangles_of: Vec<Vec<usize>> = vec![Vec::new(); self.triangles.len()];
@@ -204,7 +207,8 @@ impl SurfaceMesh {
         }
     }
 
-    /// How much of a part's area lies inside others, in a surface whose parts all enclose a positive volume.
+    /// Share of a part's area that lies inside others, in a surface whose parts all enclose a
+    /// positive volume.
     fn share_inside(&self, part: &[usize], tree: &TriangleTree) -> f64 {
         let under = 1e-6 * longest_side(&self.points);
         let (mut inside, mut whole) = (0.0, 0.0);
@@ -227,7 +231,8 @@ impl SurfaceMesh {
         self.all_corners().into_iter().map(|t| crate::vector::unit(area_vector(t))).collect()
     }
 
-    /// The sheet as a body of `thickness_m`, half of it on either side: both sides and the rims between them.
+    /// The sheet as a body of `thickness_m`, half of it on either side: both sides and the rims
+    /// between them.
     #[must_use]
     pub fn thickened(&self, thickness_m: f64) -> Self {
         let offsets = self.offsets();
@@ -247,7 +252,8 @@ impl SurfaceMesh {
         Self { points, triangles }
     }
 
-    /// For each point the direction along which both sides of the sheet keep their distance from it.
+    /// For each point the direction along which both sides of the sheet keep their distance from
+    /// it.
     fn offsets(&self) -> Vec<Vec3> {
         let mut sum = vec![[0.0; 3]; self.points.len()];
         let mut around: Vec<Vec<Vec3>> = vec![Vec::new(); self.points.len()];

@@ -1,7 +1,7 @@
 //! Stiffness and mass of a body: K and M of M ü + K u = 0, sparse, from its quadratic tetrahedra.
 //!
-//! M couples a node's three directions alike, so it is kept as one number a pair of nodes; of K, which is symmetric, only
-//! the lower triangle is kept.
+//! M couples a node's three directions alike, so it is kept as one number a pair of nodes; of K,
+//! which is symmetric, only the lower triangle is kept.
 
 use crate::elastic::Elastic;
 use crate::quadratic_tet::{NODES, mass_share_420, stiffness};

@@ -1,14 +1,17 @@
-//! Closed surface as a tree of boxes: the nearest point of it, and how often it winds around a place.
+//! Closed surface as a tree of boxes: the nearest point of it, and how often it winds around a
+//! place.
 //!
-//! The generalised winding number is the solid angle of all triangles over 4π: 1 inside, 0 outside, and in between where the
-//! surface has holes, so that ½ is the best surface through them (Jacobson, Kavan & Sorkine-Hornung 2013). Far triangles
-//! count together as one dipole (Barill et al. 2018).
+//! The generalised winding number is the solid angle of all triangles over 4π: 1 inside, 0 outside,
+//! and in between where the surface has holes, so that ½ is the best surface through them
+//! (Jacobson, Kavan & Sorkine-Hornung 2013). Far triangles count together as one dipole (Barill et
+//! al. 2018).
 
 use crate::vector::{Vec3, add_scaled, cross, distance, dot, length, mean, sub, unit};
 
 /// Triangles in a leaf.
 const LEAF: usize = 6;
-/// A box counts as a dipole from this many of its radii on: the error of a number is then below 0.01.
+/// A box counts as a dipole from this many of its radii on: the error of a number is then below
+/// 0.01.
 const FAR: f64 = 2.5;
 
 struct Node {
@@ -32,9 +35,9 @@ pub struct TriangleTree {
 /// A point of the surface.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfacePoint {
-    /// Where, m.
+    /// Place, m.
     pub point: Vec3,
-    /// How far from the place asked for, m.
+    /// Distance from the place asked for, m.
     pub distance: f64,
 }
 
@@ -93,7 +96,7 @@ impl TriangleTree {
         index
     }
 
-    /// How often the surface winds around a place.
+    /// Winding number of the surface around a place.
     #[must_use]
     pub fn winding(&self, place: Vec3) -> f64 {
         let mut angle = 0.0;
@@ -113,7 +116,7 @@ impl TriangleTree {
         angle / (4.0 * std::f64::consts::PI)
     }
 
-    /// Whether a place is inside.
+    /// Tests whether a place is inside.
     #[must_use]
     pub fn contains(&self, place: Vec3) -> bool {
         self.winding(place) >= 0.5
@@ -146,7 +149,7 @@ impl TriangleTree {
         best
     }
 
-    /// How far a ray goes from a place before it meets the surface again, m; none: it does not.
+    /// Distance of a ray from a place to the surface, m; none: it does not meet it again.
     #[must_use]
     pub fn free_path(&self, from: Vec3, direction: Vec3, nearest: f64) -> Option<f64> {
         let mut best: Option<f64> = None;
@@ -215,7 +218,8 @@ fn solid_angle([a, b, c]: [Vec3; 3]) -> f64 {
     2.0 * volume.atan2(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
 }
 
-/// Nearest point of a triangle, by the region of its plane the place falls into (Ericson, Real-Time Collision Detection, §5.1.5).
+/// Nearest point of a triangle, by the region of its plane the place falls into (Ericson, Real-Time
+/// Collision Detection, §5.1.5).
 fn nearest_in_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     let on_edge = |a: Vec3, b: Vec3| {
         let ab = sub(b, a);

@@ -60,12 +60,13 @@ impl VolumeMesh {
         faces
     }
 
-    /// Turns what a mesher wrote into a body: points at the same place become one, left-handed tetrahedra are turned, flat
-    /// ones left out; each is told. What has two parts, overlaps itself or is too large is refused.
+    /// Turns what a mesher wrote into a body: points at the same place become one, left-handed
+    /// tetrahedra are turned, flat ones left out; each is told. What has two parts, overlaps itself
+    /// or is too large is refused.
     ///
     /// # Errors
-    /// When no body is left, it has several parts, three tetrahedra share a face, a number is not finite, or it has more
-    /// than [`MOST_DEGREES_OF_FREEDOM`] unknowns.
+    /// When no body is left, it has several parts, three tetrahedra share a face, a number is not
+    /// finite, or it has more than [`MOST_DEGREES_OF_FREEDOM`] unknowns.
     pub fn checked(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
         let refuse = |what: String, right: &str| Err(ShapeError::new("", what, right));
         if self.points.iter().flatten().any(|x| !x.is_finite()) {
@@ -181,7 +182,7 @@ impl VolumeMesh {
         Ok(())
     }
 
-    /// How many parts hang together by faces.
+    /// Number of parts that hang together by faces.
     #[must_use]
     pub fn parts(&self) -> usize {
         let part_of = self.part_of();
@@ -203,7 +204,8 @@ impl VolumeMesh {
         (0..root.len()).map(|t| find(&mut root, t)).collect()
     }
 
-    /// Keeps the part of the greatest volume; gives the share of the volume that is left out, and how many parts.
+    /// Keeps the part of the greatest volume; gives the share of the volume that is left out, and
+    /// how many parts.
     pub(crate) fn keep_largest(&mut self) -> (f64, usize) {
         let part_of = self.part_of();
         let mut volumes = vec![0.0; self.tets.len()];
@@ -251,7 +253,7 @@ pub fn sorted(mut face: [u32; 3]) -> [u32; 3] {
     face
 }
 
-/// Whether sorting a triangle's corners keeps its sense.
+/// Tests whether sorting a triangle's corners keeps its sense.
 fn even([a, b, c]: [u32; 3]) -> bool {
     (u32::from(a > b) + u32::from(a > c) + u32::from(b > c)) % 2 == 0
 }

@@ -6,7 +6,8 @@ use asperity_shape::Elastic;
 use asperity_shape::eigenmodes::{Wanted, solve};
 use asperity_shape::system::System;
 
-/// The aluminium of H. Ogi, K. Sato, T. Asada & M. Hirao, JASA 112, 2553 (2002): C11 and C44 in Pa, kg/m³.
+/// The aluminium of H. Ogi, K. Sato, T. Asada & M. Hirao, JASA 112, 2553 (2002): C11 and C44 in Pa,
+/// kg/m³.
 const C11_PA: f64 = 109.26e9;
 const C44_PA: f64 = 26.72e9;
 const DENSITY_KG_M3: f64 = 2788.0;
@@ -18,7 +19,8 @@ const MEASURED_KHZ: [f64; 30] = [
     209.836, 214.753, 223.548, 231.266, 233.538, 234.717, 250.98, 251.256, 252.742, 256.122, 257.595,
     258.118, 259.035, 268.54, 277.113, 278.762, 282.311, 293.686,
 ];
-/// The same block by tests/oracles/rayleigh_ritz.py at degree 12, Hz; degree 10 differs by less than 0.01 %.
+/// The same block by tests/oracles/rayleigh_ritz.py at degree 12, Hz; degree 10 differs by less
+/// than 0.01 %.
 const RITZ_HZ: [f64; 20] = [
     116_254.32, 143_396.18, 158_346.89, 166_079.32, 169_342.85, 178_475.81, 184_714.18, 185_238.45,
     190_191.84, 197_671.42, 201_563.88, 207_096.86, 211_187.77, 215_650.27, 223_544.21, 231_149.08,

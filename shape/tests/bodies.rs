@@ -1,4 +1,5 @@
-//! Bodies made of their surfaces against closed forms, independent calculations and meshes of their own.
+//! Bodies made of their surfaces against closed forms, independent calculations and meshes of their
+//! own.
 
 use crate::common;
 
@@ -45,8 +46,8 @@ fn a_box_of_twelve_triangles_keeps_its_edges_and_its_pitches() {
 
 #[test]
 fn a_ball_has_all_its_modes_that_coincide_where_lamb_has_them() {
-    // Roots of the frequency equations of torsional and spheroidal vibration (Lamb 1882; Eringen & Suhubi, Elastodynamics
-    // II), by scipy's brentq: l = 2, 2, 1, 3 with 2 l + 1 modes each.
+    // Roots of the frequency equations of torsional and spheroidal vibration (Lamb 1882; Eringen &
+    // Suhubi, Elastodynamics II), by scipy's brentq: l = 2, 2, 1, 3 with 2 l + 1 modes each.
     let lamb_hz: Vec<f64> = [(25_018.26, 5), (26_457.40, 5), (35_104.69, 3), (38_657.72, 7)]
         .into_iter()
         .flat_map(|(hz, modes)| vec![hz; modes])
@@ -57,7 +58,8 @@ fn a_ball_has_all_its_modes_that_coincide_where_lamb_has_them() {
 
 #[test]
 fn half_a_hollow_ball_rings_as_its_own_fine_mesh_does() {
-    // A steel bowl of mean radius 50 mm and wall 4 mm, by this crate's elements on `common::bowl` (`BOWL_HZ`).
+    // A steel bowl of mean radius 50 mm and wall 4 mm, by this crate's elements on `common::bowl`
+    // (`BOWL_HZ`).
     let solved = body(Mesh::Surface(common::surface_of(&common::bowl(0.05, 0.004, [72, 24, 1]))), 20);
     assert!(worst(&solved, &BOWL_HZ) < 1e-2, "{:?}", solved.frequency_hz);
 }

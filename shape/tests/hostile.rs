@@ -149,7 +149,8 @@ fn shuffled(mesh: &SurfaceMesh, step: usize) -> SurfaceMesh {
     SurfaceMesh { points: mesh.points.clone(), triangles: triangles.collect() }
 }
 
-/// A box whose top edges have middle points that only the sides use, each sealed by a triangle of no area.
+/// A box whose top edges have middle points that only the sides use, each sealed by a triangle of
+/// no area.
 fn needled() -> SurfaceMesh {
     let mut mesh = clean();
     for [a, b] in [[4, 5], [5, 7], [7, 6], [6, 4]] {

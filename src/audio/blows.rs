@@ -1,9 +1,11 @@
-//! Blows that are felt: the Hertz pulse of an impact through the mobility of what holds the striker.
+//! Blows that are felt: the Hertz pulse of an impact through the mobility of what holds the
+//! striker.
 //!
 //! ```text
 //! F(t) = J/τ · p(t/τ)  →  mobility (`dsp::mobility`)  →  pad motion  →  the channel's high-pass  →  the channel's sum
 //! ```
-//! Everything is linear, so all blows that one probe sends to one channel share a state, and nothing is computed while nothing moves.
+//! Everything is linear, so all blows that one probe sends to one channel share a state, and
+//! nothing is computed while nothing moves.
 
 use super::voice::Shared;
 use crate::link::message::Felt;
@@ -14,13 +16,15 @@ use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::mobility::MobilityState;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Pairs of probe and channel that feel blows at the same time; a further one takes the place of the one struck first.
+/// Pairs of probe and channel that feel blows at the same time; a further one takes the place of
+/// the one struck first.
 const AT_ONCE: usize = 16;
 
-/// What is felt at present, in memory made at the start.
+/// Blows felt at present, in memory made at the start.
 pub(crate) struct Blows {
     pairs: [Pair; AT_ONCE],
-    /// How many of them feel anything: mostly none, and looking at each would cost a short block as much as a stage does.
+    /// Number of them that feel anything: mostly none, and looking at each would cost a short block
+    /// as much as a stage does.
     busy: usize,
 }
 
@@ -80,7 +84,8 @@ impl Blows {
         for pair in &mut self.pairs {
             let Some(Felt { channel, probe }) = pair.felt else { continue };
             let design = &shared.probe(probe).mobility;
-            // A ring holds a pulse under a kernel that reaches two samples to either side; read that much ahead, it is undelayed.
+            // A ring holds a pulse under a kernel that reaches two samples to either side; read
+            // that much ahead, it is undelayed.
             let ahead = position + 1 + shared.row_latency as u64;
             let mask = pair.ring.len() - 1;
             let mut moves = [[0.0; 2]; MAX_BLOCK];

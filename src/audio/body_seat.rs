@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// A body's place on the audio half.
 pub(crate) struct BodySeat {
     current: Option<Box<BodySlot>>,
-    /// What it was made of.
+    /// Maker's data of it.
     of: Option<Arc<Body>>,
     /// The name of what is here; none where a body rings out.
     id: Option<BodyId>,
@@ -29,15 +29,16 @@ pub(crate) struct BodySeat {
     /// Linear gain, and the way there.
     gain: f64,
     smoothed: Smoothed,
-    /// How many samples are left of being damped.
+    /// Samples that are left of being damped.
     damped: Option<u32>,
-    /// How many samples a body that is damped takes to fade.
+    /// Samples in which a body that is damped fades.
     fade_samples: u32,
-    /// How loud it rings out before its gain, as the last look found.
+    /// Level of its ringing before its gain, as the last look found.
     rings: f32,
 }
 
-/// Buses that a body sounds on at the same time: its own, those it is sent to, and those it is leaving.
+/// Buses that a body sounds on at the same time: its own, those it is sent to, and those it is
+/// leaving.
 const SHARES: usize = 2 * (MAX_SENDS + 1);
 
 /// A bus that a body sounds on: how loud, and the way there.
@@ -48,7 +49,7 @@ struct Share {
     smoothed: Smoothed,
 }
 
-/// How long a body that is damped takes to fade, s: 4096 samples at 44.1 kHz.
+/// Time in which a body that is damped fades, s: 4096 samples at 44.1 kHz.
 const FADE_S: f64 = 4096.0 / 44_100.0;
 impl Share {
     fn go_to(&mut self, gain: f64) {
@@ -87,17 +88,17 @@ impl BodySeat {
         }
     }
 
-    /// Whether nothing is here.
+    /// Tests whether nothing is here.
     pub(crate) fn is_empty(&self) -> bool {
         self.current.is_none()
     }
 
-    /// Whether what is here is being damped.
+    /// Tests whether what is here is being damped.
     pub(crate) fn is_damped(&self) -> bool {
         self.damped.is_some()
     }
 
-    /// How loud it rings out.
+    /// Level of its ringing.
     pub(crate) fn loudness(&self) -> f32 {
         let fade = self.damped.map_or(1.0, |left| left as f32 / self.fade_samples as f32);
         let shares = self.shares.iter().fold(0.0, |most, share| f64::max(most, share.gain));
@@ -155,12 +156,13 @@ impl BodySeat {
         self.gain = gain;
     }
 
-    /// What rings fades as if a hand were laid on it.
+    /// Damps what rings as if a hand were laid on it.
     pub(crate) fn damp(&mut self) {
         self.damped = self.damped.or(self.current.is_some().then_some(self.fade_samples));
     }
 
-    /// Whether the body sounds as it is: at a gain of 1, on one bus, neither being damped nor ringing out.
+    /// Tests whether the body sounds as it is: at a gain of 1, on one bus, neither being damped nor
+    /// ringing out.
     pub(crate) fn is_plain(&self) -> bool {
         let keeps = self.id.is_some() && self.damped.is_none() && self.alone;
         keeps && self.gain == 1.0 && self.smoothed.settled_at(1.0)
@@ -211,7 +213,7 @@ impl BodySeat {
         Some(Made { slot, of })
     }
 
-    /// Whether nothing rings here and nothing is coming.
+    /// Tests whether nothing rings here and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.current.as_ref().is_none_or(|body| body.is_silent(position))
     }
@@ -244,7 +246,8 @@ impl BodySeat {
         }
     }
 
-    /// A contact rubs the body of that name; false where another one does, or nobody can. A body that has gone is rubbed in vain.
+    /// A contact rubs the body of that name; false where another one does, or nobody can. A body
+    /// that has gone is rubbed in vain.
     pub(crate) fn rub(&mut self, id: BodyId, asked: &RubAsked<'_>) -> bool {
         self.current.as_mut().filter(|_| self.id == Some(id)).is_none_or(|body| body.rub(asked))
     }
@@ -256,8 +259,9 @@ impl BodySeat {
         }
     }
 
-    /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes were
-    /// left out. `rung` is what the bank has sounded like and left out, where another thread has rung it already.
+    /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes
+    /// were left out. `rung` is what the bank has sounded like and left out, where another thread
+    /// has rung it already.
     pub(crate) fn render(&mut self, terms: Terms, rung: Option<(&[f32], usize)>, out: &mut [f32]) -> usize {
         let Some(body) = &mut self.current else { return 0 };
         let Some((sound, left_out)) = rung else { return body.render(terms, out) };
@@ -271,7 +275,8 @@ impl BodySeat {
         self.current.as_ref().map_or(0, |body| body.modes_that_ring(position))
     }
 
-    /// Lends the body for a while; nothing may happen to it until it is [taken back](Self::take_back).
+    /// Lends the body for a while; nothing may happen to it until it is [taken
+    /// back](Self::take_back).
     pub(crate) fn lend(&mut self) -> Option<Box<BodySlot>> {
         self.current.take()
     }

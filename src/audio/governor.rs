@@ -1,28 +1,35 @@
-//! The load governor: when blocks run late, the least audible work goes first, and comes back slowly.
+//! The load governor: when blocks run late, the least audible work goes first, and comes back
+//! slowly.
 //!
 //! | level | what is left out |
 //! |---|---|
 //! | 1 | modes by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): those that nobody hears, with 6 dB of safety; at least two fifths of each body, where nothing is hidden by the model or those that would fall asleep first, whichever keeps more. They hear nothing more and ring out, without a click |
 //! | 2–9 | the contacts of lowest priority, an eighth at a time; they fade, and a move revives them later |
 //!
-//! The order is made when a body is added, for the level at which its loudest mode is heard: that of its bus ([`AudioBus::pascals_at_full_scale`](crate::AudioBus::pascals_at_full_scale)),
-//! or else 70 dB SPL. 4096 modes take a tenth of a second.
+//! The order is made when a body is added, for the level at which its loudest mode is heard: that
+//! of its bus ([`AudioBus::pascals_at_full_scale`](crate::AudioBus::pascals_at_full_scale)), or
+//! else 70 dB SPL. 4096 modes take a tenth of a second.
 //!
-//! What it costs: on measured tables of ceramic and wood the first level leaves 5 of 22 and 9 of 14 groups, and the ear's excitation is within
-//! 1 dB in every cell of an ERB and 20 ms (`cli/tests/perceptual_order.rs`). After recovery the
-//! sound is that of an engine that was never late. `asperity report` has a table of all levels.
+//! What it costs: on measured tables of ceramic and wood the first level leaves 5 of 22 and 9 of 14
+//! groups, and the ear's excitation is within 1 dB in every cell of an ERB and 20 ms
+//! (`cli/tests/perceptual_order.rs`). After recovery the sound is that of an engine that was never
+//! late. `asperity report` has a table of all levels.
 //!
-//! A level saves at least a tenth of what it acts on, or it is none: three more of modes saved nothing of ten fingers on one body and a tenth of a
-//! bank alone, and four that took an octave of the micro-relief each saved 1 to 11 % in all, left 15 to 3 % of the ear's cells within 1 dB and what is felt
-//! 2 to 43 dB off, where the least of ten contacts is a tenth and leaves the other nine as they are.
+//! A level saves at least a tenth of what it acts on, or it is none: three more of modes saved
+//! nothing of ten fingers on one body and a tenth of a bank alone, and four that took an octave of
+//! the micro-relief each saved 1 to 11 % in all, left 15 to 3 % of the ear's cells within 1 dB and
+//! what is felt 2 to 43 dB off, where the least of ten contacts is a tenth and leaves the other
+//! nine as they are.
 //!
-//! *Its own lateness only.* A block may be late because the host did something else, and leaving work out then costs sound and
-//! wins nothing. So what counts is the engine's own share, the median of the last [`MEDIAN_OF`] reports: the level rises with every
-//! report above [`LATE`] while that share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a share of 1 % up to
-//! 15 late blocks in a row change nothing; work that does not fit is answered after 16 blocks.
+//! *Its own lateness only.* A block may be late because the host did something else, and leaving
+//! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
+//! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`LATE`] while that
+//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a share of 1
+//! % up to 15 late blocks in a row change nothing; work that does not fit is answered after 16
+//! blocks.
 //!
-//! The level is a function of the reports and of the samples rendered alone: where no load is reported, as
-//! offline, nothing is ever left out and every bit repeats.
+//! The level is a function of the reports and of the samples rendered alone: where no load is
+//! reported, as offline, nothing is ever left out and every bit repeats.
 
 use crate::prepared::bank::MODE_LEVELS;
 
@@ -30,7 +37,7 @@ use crate::prepared::bank::MODE_LEVELS;
 pub(crate) const LATE: f32 = 0.8;
 /// Share of the period below which there is room for more work.
 pub(crate) const EASY: f32 = 0.5;
-/// How long the load must be easy for one level back, s.
+/// Time that the load must be easy for one level back, s.
 pub(crate) const RECOVERY_S: f64 = 0.5;
 
 /// Reports whose median is the engine's own share.
@@ -40,7 +47,7 @@ pub(crate) const MEDIAN_OF: usize = 31;
 const MODES: u32 = MODE_LEVELS as u32 - 1;
 const HIGHEST: u32 = MODES + 8;
 
-/// How much is left out at present.
+/// Level that is left out at present.
 pub(crate) struct Governor {
     enabled: bool,
     level: u32,
@@ -49,7 +56,8 @@ pub(crate) struct Governor {
     recovery_samples: u64,
     /// Contacts that sounded when contacts first had to go.
     contacts: usize,
-    /// Whether each of the last reports was above [`EASY`]; one bit a report, the newest lowest.
+    /// True for each of the last reports that was above [`EASY`]; one bit a report, the newest
+    /// lowest.
     busy: u32,
 }
 
@@ -83,7 +91,7 @@ impl Governor {
         }
     }
 
-    /// Whether the median of the last reports is above [`EASY`]: more than half of them are.
+    /// Tests whether the median of the last reports is above [`EASY`]: more than half of them are.
     fn is_busy(&self) -> bool {
         2 * self.busy.count_ones() as usize > MEDIAN_OF
     }
@@ -93,7 +101,7 @@ impl Governor {
         self.level.min(MODES) as usize
     }
 
-    /// How many contacts may sound, of at most `most`.
+    /// Number of contacts that may sound, of at most `most`.
     pub(crate) fn contacts(&self, most: usize) -> usize {
         let gone = self.level.saturating_sub(MODES) as usize;
         if gone == 0 { most } else { (self.contacts - self.contacts * gone / 9).clamp(1, most) }

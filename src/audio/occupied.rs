@@ -22,7 +22,7 @@ impl Occupied {
         self.0.retain(|place| in_use(*place));
     }
 
-    /// How many there are.
+    /// Number of them.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }

@@ -10,11 +10,11 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// The outlets of all open ports.
 pub(crate) struct Outlets {
     open: Vec<Box<dyn Outlet>>,
-    /// Whether any of them watches contacts.
+    /// True where any of them watches contacts.
     watching: bool,
-    /// What leaves of a stretch.
+    /// Samples of a stretch that leave.
     leaving: [f32; MAX_BLOCK],
-    /// Of each haptic channel, what the mean of inner samples has come to so far.
+    /// Mean of inner samples so far, of each haptic channel.
     means: Box<[f32]>,
 }
 
@@ -72,8 +72,8 @@ impl Outlets {
         self.open.iter_mut().for_each(|outlet| to(&mut **outlet, first, &self.leaving[..count]));
     }
 
-    /// The same of a channel of which means leave. They are kept up while no port is open, so that one that opens between two samples
-    /// is shown whole ones.
+    /// Shows a channel of which means leave. They are kept up while no port is open, so that one
+    /// that opens between two samples is shown whole ones.
     #[cold]
     #[inline(never)]
     pub(crate) fn haptic_means(&mut self, channel: usize, inner: InnerRate, position: u64, block: &[f32]) {
@@ -84,14 +84,14 @@ impl Outlets {
         }
     }
 
-    /// The same of an audio bus.
+    /// Shows an audio bus.
     pub(crate) fn bus(&mut self, bus: usize, inner: InnerRate, position: u64, block: &[f32]) {
         if self.are_open() {
             self.show(inner, position, block, |outlet, first, leaving| outlet.bus(bus, first, leaving));
         }
     }
 
-    /// Whether any port is open.
+    /// Tests whether any port is open.
     pub(crate) fn are_open(&self) -> bool {
         !self.open.is_empty()
     }

@@ -1,4 +1,5 @@
-//! A worker pool that the audio thread can use: jobs go out, every thread takes the next one, all come home.
+//! A worker pool that the audio thread can use: jobs go out, every thread takes the next one, all
+//! come home.
 //!
 //! ```text
 //! audio thread   jobs → waiting ─┬─ runs some itself ─┬→ home, in any order
@@ -6,12 +7,15 @@
 //! ```
 //! Jobs may go out while others are on their way: there is one wait, for the last of them.
 //!
-//! A job owns what it works on, so who runs it changes nothing but the time: whoever adds results up does so in an order of its own.
+//! A job owns what it works on, so who runs it changes nothing but the time: whoever adds results
+//! up does so in an order of its own.
 //!
-//! *No lock.* Both queues are lock-free rings made at the start. A helper looks for work [`LOOKS`] times, then sleeps; the audio thread wakes a
-//! sleeping one by `unpark`, which marks it and, if it sleeps, asks the system to wake it: nobody is waited for. What no helper has taken by
-//! the time that the audio thread is done with its own job it runs itself, so that a helper that wakes late costs nothing. All it ever waits for
-//! is a job that a helper is in the middle of; after [`LOOKS`] looks it offers its processor, in case the helper has none.
+//! *No lock.* Both queues are lock-free rings made at the start. A helper looks for work [`LOOKS`]
+//! times, then sleeps; the audio thread wakes a sleeping one by `unpark`, which marks it and, if it
+//! sleeps, asks the system to wake it: nobody is waited for. What no helper has taken by the time
+//! that the audio thread is done with its own job it runs itself, so that a helper that wakes late
+//! costs nothing. All it ever waits for is a job that a helper is in the middle of; after [`LOOKS`]
+//! looks it offers its processor, in case the helper has none.
 
 use crate::link::threads::Arc;
 use crate::link::threads::atomic::Ordering::{Relaxed, SeqCst};
@@ -75,7 +79,8 @@ impl<J: Job> Pool<J> {
         Ok(pool)
     }
 
-    /// Sends a job out; it comes [home](Self::next) done. Nobody takes more of them than there is room for: what is too many comes back.
+    /// Sends a job out; it comes [home](Self::next) done. Nobody takes more of them than there is
+    /// room for: what is too many comes back.
     pub(crate) fn send(&mut self, job: J) -> Result<(), J> {
         // Nor more than the way home has room for, however many helpers have taken meanwhile.
         if self.out == self.queues.done.capacity() {
@@ -86,8 +91,8 @@ impl<J: Job> Pool<J> {
         Ok(())
     }
 
-    /// Wakes helpers that sleep, as many as there is work for beside this thread. To be called after some were sent: waking takes as long as a
-    /// short job.
+    /// Wakes helpers that sleep, as many as there is work for beside this thread. To be called
+    /// after some were sent: waking takes as long as a short job.
     pub(crate) fn wake(&self) {
         // Either a helper that falls asleep sees the jobs, or its mark is seen here.
         fence(SeqCst);
@@ -99,7 +104,8 @@ impl<J: Job> Pool<J> {
         }
     }
 
-    /// A job that is done, whoever did it; none if all are home. While none is, this thread does one of those that wait.
+    /// A job that is done, whoever did it; none if all are home. While none is, this thread does
+    /// one of those that wait.
     pub(crate) fn next(&mut self, room: &mut J::Room) -> Option<J> {
         let mut looks = 0;
         while self.out > 0 {
@@ -120,7 +126,7 @@ impl<J: Job> Pool<J> {
 }
 
 impl<J: Job> Queues<J> {
-    /// What a helper does all its life.
+    /// Loop of a helper.
     fn help(&self, index: usize, room: &mut J::Room) {
         let mut looks = 0;
         while !self.ends.load(Relaxed) {

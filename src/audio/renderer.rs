@@ -1,8 +1,9 @@
 //! The audio half: applies events at their samples, runs the voices, rings the bodies, mixes.
 //!
 //! Everything here is infallible and free of allocation, locks, logging and clocks; all memory was
-//! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
-//! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
+//! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid
+//! of [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same
+//! bits.
 
 mod contacts;
 mod crew;
@@ -57,7 +58,7 @@ pub struct Renderer {
     /// Boxed, so that they change hands without being copied.
     #[allow(clippy::vec_box, reason = "see above")]
     voices: Vec<Box<Voice>>,
-    /// Where each voice is on a body that has shapes.
+    /// Place of each voice on a body that has shapes.
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
@@ -156,19 +157,20 @@ impl Renderer {
         })
     }
 
-    /// How many haptic channels there are.
+    /// Number of haptic channels.
     #[must_use]
     pub fn haptic_channels(&self) -> usize {
         self.channels.len()
     }
 
-    /// How many audio buses there are.
+    /// Number of audio buses.
     #[must_use]
     pub fn audio_buses(&self) -> usize {
         self.buses.len()
     }
 
-    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`](field@Config::kernel)).
+    /// The instruction set of the kernels whose last bits depend on it
+    /// ([`Config::kernel`](field@Config::kernel)).
     #[must_use]
     pub fn kernel(&self) -> Isa {
         self.kernel.isa()
@@ -185,17 +187,18 @@ impl Renderer {
         self.shared.sample_rate_hz
     }
 
-    /// Samples by which haptic outputs lag behind the stamps of their events, besides the delay of the
-    /// path filter: the look-ahead of the contact model. Sound lags by
+    /// Samples by which haptic outputs lag behind the stamps of their events, besides the delay of
+    /// the path filter: the look-ahead of the contact model. Sound lags by
     /// [`audio_latency_samples`](Self::audio_latency_samples).
     #[must_use]
     pub fn latency_samples(&self) -> usize {
         self.shared.inner.lag(self.shared.row_latency)
     }
 
-    /// Samples by which the audio buses lag behind the stamps of their events: two inner samples more than
-    /// [`latency_samples`](Self::latency_samples), 45 µs at 44.1 kHz, the middle of the kernel that spreads
-    /// pulses over samples ([`KERNEL_LATENCY`]). From four inner samples a sample on, nothing of it is left.
+    /// Samples by which the audio buses lag behind the stamps of their events: two inner samples
+    /// more than [`latency_samples`](Self::latency_samples), 45 µs at 44.1 kHz, the middle of the
+    /// kernel that spreads pulses over samples ([`KERNEL_LATENCY`]). From four inner samples a
+    /// sample on, nothing of it is left.
     #[must_use]
     pub fn audio_latency_samples(&self) -> usize {
         self.shared.inner_audio.lag(self.shared.row_latency + KERNEL_LATENCY)
@@ -207,9 +210,10 @@ impl Renderer {
         self.position / self.shared.inner.every as u64
     }
 
-    /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
-    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load). When
-    /// blocks run late, the least audible work is left out ([`Config::shed_load`](crate::Config::shed_load)).
+    /// Tells the engine which share of its time budget the last block took (1 = all of it); the
+    /// device measures it, because nothing in here reads a clock. Shown in
+    /// [`Stats::load`](crate::Stats::load). When blocks run late, the least audible work is left
+    /// out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
         self.governor.hear(load, self.position, self.sounding_count());
@@ -221,20 +225,21 @@ impl Renderer {
 
     /// Changes what all voices need.
     fn change_shared(&mut self, change: impl FnOnce(&mut Shared)) {
-        // Every job has given its share of it back before it came home, so this is always the only one.
+        // Every job has given its share of it back before it came home, so this is always the only
+        // one.
         if let Some(shared) = Arc::get_mut(&mut self.shared) {
             change(shared);
         }
     }
 
-    /// How many contacts may sound at present.
+    /// Number of contacts that may sound at present.
     fn contact_limit(&self) -> usize {
         self.governor.contacts(self.max_contacts)
     }
 
-    /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
-    /// counts and the rest is silent). Haptic channel i goes into haptic slice i, audio bus i into audio slice i, both in the order of
-    /// the config.
+    /// Renders the next samples: one slice a channel, all equally long (if they are not, the
+    /// shortest counts and the rest is silent). Haptic channel i goes into haptic slice i, audio
+    /// bus i into audio slice i, both in the order of the config.
     ///
     /// ```
     /// use asperity::{ActuatorSettings, AudioBus, Config, Engine};

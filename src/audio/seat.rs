@@ -1,7 +1,8 @@
 //! A surface's place on the audio half, where one surface can follow another without a click.
 //!
-//! A replaced surface is crossfaded, height by height, over [`CHANGE_S`] of absolute samples; the old
-//! one then goes home to be freed. A surface that is removed stays until the contacts on it have faded.
+//! A replaced surface is crossfaded, height by height, over [`CHANGE_S`] of absolute samples; the
+//! old one then goes home to be freed. A surface that is removed stays until the contacts on it
+//! have faded.
 
 use crate::link::message::Dead;
 use crate::link::ring::Sender;
@@ -18,7 +19,7 @@ use asperity_texture::height_field::{
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
 
-/// How long one surface takes to become another, s.
+/// Time in which one surface becomes another, s.
 pub(crate) const CHANGE_S: f64 = 0.02;
 
 /// One surface's place.
@@ -42,14 +43,14 @@ pub(crate) struct Noise<'a> {
     pub(crate) footprint_m: &'a [f64],
     /// The least and the greatest coordinates of the path, those midway included.
     pub(crate) bounds_m: [[f64; 2]; 2],
-    /// Where the contact was last.
+    /// Last place of the contact.
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
     pub(crate) between: Option<NoiseBetween<'a>>,
 }
 
-/// What setting a surface means for the contacts on it.
+/// Consequence of setting a surface for the contacts on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Change {
     /// Contacts go on; heights crossfade.
@@ -64,8 +65,8 @@ impl Seat {
         self.current.as_deref()
     }
 
-    /// Puts a surface here. A replacement that is itself replaced before its turn goes home at once;
-    /// the caller makes sure that `home` has room for it.
+    /// Puts a surface here. A replacement that is itself replaced before its turn goes home at
+    /// once; the caller makes sure that `home` has room for it.
     pub(crate) fn set(
         &mut self,
         id: SurfaceId,
@@ -110,12 +111,12 @@ impl Seat {
         self.removed = true;
     }
 
-    /// Whether contacts may begin here.
+    /// Tests whether contacts may begin here.
     pub(crate) fn is_open(&self) -> bool {
         self.current.is_some() && !self.removed
     }
 
-    /// Whether no surface is here, none fades and none waits.
+    /// Tests whether no surface is here, none fades and none waits.
     pub(crate) fn is_empty(&self) -> bool {
         self.current.is_none() && self.previous.is_none() && self.waiting.is_none()
     }
@@ -183,7 +184,7 @@ impl Seat {
         }
     }
 
-    /// Whether what is here gives way nowhere, or is known to.
+    /// Tests whether what is here gives way nowhere, or is known to.
     pub(crate) fn is_hard(&self) -> bool {
         let hard = |slot: &SurfaceSlot| slot.surface.compliance_m_n == 0.0 && slot.properties.is_rigid;
         self.current.as_deref().is_none_or(hard) && self.previous.as_deref().is_none_or(hard)
@@ -194,7 +195,7 @@ impl Seat {
         self.source().is_some_and(|source| source.set(change, sample))
     }
 
-    /// What heights come from.
+    /// Source of heights.
     pub(crate) fn source(&mut self) -> Option<&mut (dyn HeightField + '_)> {
         match &mut self.current {
             Some(slot) => Some(&mut *slot.surface.source),
@@ -216,7 +217,7 @@ impl Seat {
         finish.0.into_inner()
     }
 
-    /// How much higher the ground lies about a contact than under it, m, for a tip that rides on it.
+    /// Height of the ground about a contact over that under it, m, for a tip that rides on it.
     pub(crate) fn hollow_m(
         &mut self,
         touch: &Touch,
@@ -229,8 +230,9 @@ impl Seat {
         }
     }
 
-    /// What cubics through samples a footprint apart miss of the micro-relief, and what has to be looked at so that no more than `left_m` is
-    /// missed; the other footprint is that by which octaves fade. While the surface becomes another it tells of nothing.
+    /// Error of cubics through samples a footprint apart on the micro-relief, and what has to be
+    /// looked at so that no more than `left_m` is missed; the other footprint is that by which
+    /// octaves fade. While the surface becomes another it tells of nothing.
     pub(crate) fn missed(
         &mut self,
         roughness: f64,
@@ -247,7 +249,8 @@ impl Seat {
         }
     }
 
-    /// Mean square of the relief that the source really has about a place, m²; of one that does not tell, a ninth of the square of its reach.
+    /// Mean square of the relief that the source really has about a place, m²; of one that does not
+    /// tell, a ninth of the square of its reach.
     pub(crate) fn power_m2(&mut self, touch: &Touch, room: &mut SurfaceBlock) -> f64 {
         let Some(slot) = &mut self.current else { return 0.0 };
         let path = PathBlock {

@@ -4,11 +4,12 @@
 //! g[n+1] = g[n] + (1 − e^(−1/(τ rate))) (target − g[n])          τ = 5 ms
 //! ```
 //!
-//! It ends exactly on its target, so that a gain of 1 that was left and taken again changes no bit afterwards.
+//! It ends exactly on its target, so that a gain of 1 that was left and taken again changes no bit
+//! afterwards.
 
 /// Time constant, s: a fade of some 20 ms, no click and no wait.
 const TIME_CONSTANT_S: f64 = 0.005;
-/// What is left of the way when it counts as done: −120 dB.
+/// Rest of the way at which it counts as done: −120 dB.
 const THERE: f64 = 1e-6;
 
 /// A gain, and where it goes.
@@ -34,7 +35,7 @@ impl Smoothed {
         self.now = gain;
     }
 
-    /// Whether the gain is `target`, and stays it.
+    /// Tests whether the gain is `target`, and stays it.
     pub(crate) fn settled_at(&self, target: f64) -> bool {
         self.now == target
     }

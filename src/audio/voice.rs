@@ -58,10 +58,10 @@ use skin::ContactSkin;
 use tip::Tip;
 use watching::Done;
 
-/// Where the sound and feel of a voice stand.
+/// State of the sound and feel of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
-    /// Nobody's.
+    /// Unused.
     Free,
     /// Touching.
     Sounding,
@@ -77,21 +77,21 @@ pub(crate) struct Voice {
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
-    /// Whether it fades because the game said so, and not because it lapsed or was stolen.
+    /// True where it fades because the game said so, and not because it lapsed or was stolen.
     pub(crate) ended: bool,
-    /// Whether it fades because its contact has jumped and goes on in another voice.
+    /// True where it fades because its contact has jumped and goes on in another voice.
     left_behind: bool,
     /// Reports without force in a row.
     empty_reports: u32,
     slot: usize,
     asleep: bool,
     last_row: PadSample,
-    /// What the surface does back.
+    /// Reaction of the surface.
     reaction: Reaction,
     /// Sent to the body since the last row that was shown, N·s.
     unshown_n_s: f64,
     path: Path,
-    /// Where in the micro-relief it is.
+    /// Place in the micro-relief.
     cells: TileCells,
     between: Between,
     rolling: Rolling,
@@ -111,7 +111,8 @@ impl Voice {
         Self::idle(slot, shared, shared.sample_rate_hz)
     }
 
-    /// A small voice in the place of one that another thread renders; never rendered itself. Allocates.
+    /// A small voice in the place of one that another thread renders; never rendered itself.
+    /// Allocates.
     pub(crate) fn placeholder(shared: &Shared) -> Self {
         Self::idle(0, shared, 0.0)
     }
@@ -153,7 +154,7 @@ impl Voice {
         self.rolling.tell(sample);
     }
 
-    /// Whether there is anything to render but rest.
+    /// Tests whether there is anything to render but rest.
     pub(crate) fn works(&self) -> bool {
         self.phase != Phase::Free && !self.asleep
     }
@@ -163,7 +164,7 @@ impl Voice {
         self.asleep = false;
     }
 
-    /// How much would be missed: what presses harder and moves faster is heard and felt more.
+    /// Priority: what presses harder and moves faster is heard and felt more.
     pub(crate) fn priority(&self) -> f64 {
         let [u, v] = self.path.last.velocity_m_s;
         let speed_m_s = (u * u + v * v).sqrt();
@@ -173,7 +174,8 @@ impl Voice {
         }
     }
 
-    /// Renders a stretch into `scratch.out`; returns what presses on the touched body, at the steps of the absolute grid.
+    /// Renders a stretch into `scratch.out`; returns what presses on the touched body, at the steps
+    /// of the absolute grid.
     pub(crate) fn render<T: Tap>(
         &mut self,
         stretch: Stretch<'_>,
@@ -201,7 +203,8 @@ impl Voice {
         pressing
     }
 
-    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it, wherever the stretch ends.
+    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it,
+    /// wherever the stretch ends.
     fn until_silent<'a>(&self, stretch: Stretch<'a>) -> Stretch<'a> {
         match self.phase {
             Phase::Fading { left } => Stretch { n: stretch.n.min(left as usize), ..stretch },
@@ -209,8 +212,9 @@ impl Voice {
         }
     }
 
-    /// Touches the surface, at the steps of the absolute grid and before its heights are sampled: a surface that gives way answers within the
-    /// same cell wherever it is cut into stretches. A sleeping contact still touches, and wakes when the ground stirs.
+    /// Touches the surface, at the steps of the absolute grid and before its heights are sampled: a
+    /// surface that gives way answers within the same cell wherever it is cut into stretches. A
+    /// sleeping contact still touches, and wakes when the ground stirs.
     fn touch(&mut self, Stretch { position, .. }: Stretch<'_>, seat: &mut Seat) {
         if position.is_multiple_of(MAX_BLOCK as u64) {
             self.reaction = seat.touch(&self.touch_at(position));
@@ -218,7 +222,8 @@ impl Voice {
         }
     }
 
-    /// Updates what is slow, at the steps of the absolute grid. By itself, because most short stretches have none.
+    /// Updates what is slow, at the steps of the absolute grid. By itself, because most short
+    /// stretches have none.
     #[inline(never)]
     fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, .. } = stretch;
@@ -303,7 +308,8 @@ impl Voice {
         }
     }
 
-    /// Exciters: rows, coupled force and the ground's grains become impulses on the body, friction what rubs it.
+    /// Exciters: rows, coupled force and the ground's grains become impulses on the body, friction
+    /// what rubs it.
     fn excite(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Stretch { shared, position, n, .. } = stretch;
         let Some(slot) = seat.current() else { return };
@@ -318,7 +324,8 @@ impl Voice {
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
     }
 
-    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and not where it fades.
+    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and
+    /// not where it fades.
     fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
         if !tap.is_watching() || self.left_behind {
             return;
@@ -340,7 +347,7 @@ impl Voice {
         shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
     }
 
-    /// Where the stretch leaves the contact.
+    /// State in which the stretch leaves the contact.
     fn finish(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
         if self.phase == Phase::Free {
             return;

@@ -1,4 +1,5 @@
-//! Settings as text: what an engine is built with, for programs and languages that would rather not name every field.
+//! Settings as text: what an engine is built with, for programs and languages that would rather not
+//! name every field.
 //!
 //! ```toml
 //! sample_rate_hz = 48000
@@ -12,7 +13,8 @@ use super::FileError;
 use crate::model::config::Config;
 
 impl Config {
-    /// Reads settings as TOML, or as JSON where the text begins with a brace. What is missing is as in [`Config::default`].
+    /// Reads settings as TOML, or as JSON where the text begins with a brace. What is missing is as
+    /// in [`Config::default`].
     ///
     /// ```
     /// use asperity::{Config, PathMode};
@@ -24,7 +26,8 @@ impl Config {
     /// ```
     ///
     /// # Errors
-    /// When the text is neither, a key is unknown, or a number is outside its range; the message names it.
+    /// When the text is neither, a key is unknown, or a number is outside its range; the message
+    /// names it.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let refuse = |message: &str| {
             let right = "fields and their values are those of `Config`";

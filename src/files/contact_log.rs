@@ -1,8 +1,8 @@
 //! Contact logs: what a game reported, one JSON object a line, in time order.
 //!
 //! A log names surfaces and bodies as the scene file does; [`Names`] turns them into the ids of a
-//! running [`Scene`](crate::Scene). Replaying a log offline gives the same samples as the live engine
-//! that recorded it.
+//! running [`Scene`](crate::Scene). Replaying a log offline gives the same samples as the live
+//! engine that recorded it.
 
 mod edit;
 mod error;
@@ -163,8 +163,8 @@ impl ContactLog {
     /// Reads a `.jsonl` file.
     ///
     /// # Errors
-    /// When it cannot be read, a line is not an event or has a key that its event does not know, or time
-    /// runs backwards.
+    /// When it cannot be read, a line is not an event or has a key that its event does not know, or
+    /// time runs backwards.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LogError> {
         Self::load_from(&Disk, path)
     }
@@ -188,8 +188,8 @@ impl ContactLog {
         Self::parse_telling(text, name).map(|(log, _)| log)
     }
 
-    /// [`parse`](Self::parse), and what of the format this version reads past: `NAME:LINE: KEY`, each key
-    /// where it is met first.
+    /// [`parse`](Self::parse), and what of the format this version reads past: `NAME:LINE: KEY`,
+    /// each key where it is met first.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -227,7 +227,8 @@ impl ContactLog {
         self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
-    /// Tests whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
+    /// Tests whether every event that is felt is felt on one of so many channels: on another it
+    /// would be felt nowhere.
     ///
     /// # Errors
     /// [`LogError::Event`], the first.

@@ -28,7 +28,8 @@ impl FileError {
         Self::new(path.display(), what, right)
     }
 
-    /// An error that another type has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it says.
+    /// An error that another type has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it
+    /// says.
     pub fn told(text: impl fmt::Display) -> Self {
         let text = text.to_string();
         let (front, right) = text.rsplit_once("; ").unwrap_or((&text, "see `asperity --help`"));
@@ -68,7 +69,8 @@ impl FileError {
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = format!("{}: {}; {}", self.at, self.what, self.right);
-        // Names come from outside and may hold line breaks or terminal codes; the report is one line.
+        // Names come from outside and may hold line breaks or terminal codes; the report is one
+        // line.
         f.write_str(
             &line.split(char::is_control).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
         )

@@ -1,4 +1,5 @@
-//! Modes files, `NAME.modes.json`: the modes of one body, where they come from, and what its strike had besides.
+//! Modes files, `NAME.modes.json`: the modes of one body, where they come from, and what its strike
+//! had besides.
 
 use super::shapes_sidecar::{shapes_from_bytes, shapes_to_file};
 use super::storage::{self, Disk, Files};
@@ -16,7 +17,8 @@ use std::sync::Arc;
 pub const FORMAT: &str = "asperity.modes";
 /// The `version` of a file with modes alone.
 pub const VERSION: u32 = 1;
-/// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of version 1 do.
+/// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of
+/// version 1 do.
 pub const VERSION_WITH_SHAPES: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
@@ -56,8 +58,8 @@ impl ModalModel {
     /// Reads `NAME.modes.json`.
     ///
     /// # Errors
-    /// When the file cannot be read, is not a modes file of version 1 or 2, or holds a number that no body
-    /// can have.
+    /// When the file cannot be read, is not a modes file of version 1 or 2, or holds a number that
+    /// no body can have.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
         Self::load_from(&Disk, path)
     }
@@ -141,8 +143,8 @@ impl ModalModel {
         serde_json::to_string(&self.file()).unwrap_or_default()
     }
 
-    /// Writes with the shapes in a file of their own, `name` beside it (a glTF document where it ends in `.glb`): its text, and the bytes of that
-    /// file. None where there are no shapes.
+    /// Writes with the shapes in a file of their own, `name` beside it (a glTF document where it
+    /// ends in `.glb`): its text, and the bytes of that file. None where there are no shapes.
     #[must_use]
     pub fn to_json_beside(&self, name: &str) -> Option<(String, Vec<u8>)> {
         let mut file = self.file();

@@ -1,5 +1,5 @@
-//! Shapes beside a modes file as a glTF document of one file (`.glb`), which any viewer of meshes opens: numbers where the draft
-//! `KHR_audio_rigid_bodies` has them.
+//! Shapes beside a modes file as a glTF document of one file (`.glb`), which any viewer of meshes
+//! opens: numbers where the draft `KHR_audio_rigid_bodies` has them.
 //!
 //! | accessor of `extensions.KHR_audio_rigid_bodies.modalModels[0]` | what |
 //! |---|---|
@@ -8,7 +8,8 @@
 //! | `shapes` | `phi_per_sqrt_kg`, `f32`, mode after mode |
 //! | `extras.gains`, `extras.struck_point` | what the draft has no name for, as JSON |
 //!
-//! The container is twelve bytes of head and two chunks (glTF 2.0 §4.4), the JSON is `serde_json`'s: no crate for the rest of the format is needed.
+//! The container is twelve bytes of head and two chunks (glTF 2.0 §4.4), the JSON is
+//! `serde_json`'s: no crate for the rest of the format is needed.
 
 use crate::model::mode_shapes::ModeShapes;
 use serde_json::{Value, json};

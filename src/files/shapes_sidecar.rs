@@ -1,4 +1,5 @@
-//! Shapes in a file of their own beside a modes file: plain binary, a quarter of the text's size and read without parsing numbers.
+//! Shapes in a file of their own beside a modes file: plain binary, a quarter of the text's size
+//! and read without parsing numbers.
 //!
 //! | bytes | what |
 //! |---|---|
@@ -9,7 +10,8 @@
 //! | 8 × modes | `gains`: `f64` |
 //! | 12 × points × modes | `phi_per_sqrt_kg`: x, y, z as `f32`, mode after mode, so that fewer modes are a prefix |
 //!
-//! Little-endian throughout. What begins with `glTF` is a [glTF document](super::shapes_glb) with the same numbers.
+//! Little-endian throughout. What begins with `glTF` is a [glTF document](super::shapes_glb) with
+//! the same numbers.
 
 use super::shapes_glb::{self, shapes_from_glb, shapes_to_glb};
 use crate::model::mode_shapes::ModeShapes;

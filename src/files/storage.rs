@@ -1,6 +1,7 @@
 //! Storage: where the files lie that a scene names. On a disk, in memory, in an engine's archive.
 //!
-//! Everything the engine reads comes through [`Files`], under paths as the scene writes them (relative to the scene file).
+//! Everything the engine reads comes through [`Files`], under paths as the scene writes them
+//! (relative to the scene file).
 
 use super::FileError;
 use asperity_texture::picture::{Channel, ChannelImage, MAX_FILE_BYTES, Picture, Problem};
@@ -32,8 +33,8 @@ pub trait Files {
     /// When there is no such file ([`io::ErrorKind::NotFound`]) or it cannot be read.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
-    /// The picture at that path, if it is decoded already; `None`: its file is read and decoded, which needs the feature
-    /// `image`.
+    /// The picture at that path, if it is decoded already; `None`: its file is read and decoded,
+    /// which needs the feature `image`.
     fn picture(&self, _path: &Path) -> Option<Cow<'_, Picture>> {
         None
     }

@@ -1,13 +1,14 @@
 //! Game seconds → absolute sample index.
 //!
-//! Offline, a stamp `t` is the point t · rate between two samples. Live, the game clock and the audio clock are two
-//! clocks: the first event is tied to the sample that is rendered next, and later stamps keep their
-//! distance to it, because jitter of arrival must not become jitter of motion (using arrival times
-//! raises the velocity ripple from 3.4 % to 12 %). Within a device block the audio position stands
-//! still while game time goes on, so the mapping follows the *smallest* lead: a stamp that comes up to
-//! 2 ms after its sample moves the mapping at once, one that comes later keeps its stamp (the path reckons on from
-//! it) and moves the mapping a little, and early stamps let it creep back. What else games do with their time is in
-//! the table of the module `live`.
+//! Offline, a stamp `t` is the point t · rate between two samples. Live, the game clock and the
+//! audio clock are two clocks: the first event is tied to the sample that is rendered next, and
+//! later stamps keep their distance to it, because jitter of arrival must not become jitter of
+//! motion (using arrival times raises the velocity ripple from 3.4 % to 12 %). Within a device
+//! block the audio position stands still while game time goes on, so the mapping follows the
+//! *smallest* lead: a stamp that comes up to 2 ms after its sample moves the mapping at once, one
+//! that comes later keeps its stamp (the path reckons on from it) and moves the mapping a little,
+//! and early stamps let it creep back. What else games do with their time is in the table of the
+//! module `live`.
 
 mod live;
 
@@ -39,7 +40,7 @@ pub(crate) struct Clock {
     stands: Stands,
 }
 
-/// Where the audio stands, and since when.
+/// Place of the audio, and since when.
 #[derive(Debug, Clone, Copy)]
 struct Stands {
     position: u64,
@@ -51,7 +52,8 @@ struct Stands {
 
 #[derive(Debug, Clone)]
 enum Mapping {
-    /// Sample of game time 0, none = the next stamp holds at the next sample; game seconds a second of audio.
+    /// Sample of game time 0, none = the next stamp holds at the next sample; game seconds a second
+    /// of audio.
     Exact(Option<f64>, f64),
     Live(Live),
 }
@@ -65,7 +67,7 @@ impl Clock {
         Self { sample_rate_hz, mapping, last: Stamp::default(), epoch: 0, stands: Stands::UNKNOWN }
     }
 
-    /// The same times at another rate; a live clock ties itself anew.
+    /// Clock at another rate; a live one ties itself anew.
     pub(crate) fn at_rate(&mut self, sample_rate_hz: f64) {
         let ratio = sample_rate_hz / self.sample_rate_hz;
         match &mut self.mapping {
@@ -80,17 +82,18 @@ impl Clock {
         self.last
     }
 
-    /// It counts on whenever what was stamped before has come too late: strikes of an earlier one are dropped.
+    /// It counts on whenever what was stamped before has come too late: strikes of an earlier one
+    /// are dropped.
     pub(crate) fn epoch(&self) -> u64 {
         self.epoch
     }
 
-    /// What was stamped before has come too late.
+    /// Notes that what was stamped before has come too late.
     pub(crate) fn let_go(&mut self) {
         self.epoch += 1;
     }
 
-    /// Whether game time may run backwards.
+    /// Tests whether game time may run backwards.
     pub(crate) fn is_live(&self) -> bool {
         matches!(self.mapping, Mapping::Live(_))
     }
@@ -103,7 +106,8 @@ impl Clock {
         }
     }
 
-    /// From game time `since_s` on, the game runs at another pace; a live clock finds out by itself.
+    /// From game time `since_s` on, the game runs at another pace; a live clock finds out by
+    /// itself.
     pub(crate) fn set_pace(&mut self, pace: f64, since_s: f64) {
         if let Mapping::Exact(zero, old) = &mut self.mapping {
             // The moment at which the pace changes stays where it is.
@@ -122,7 +126,7 @@ impl Clock {
         (self.last, self.stands) = (Stamp::whole(position), Stands::UNKNOWN);
     }
 
-    /// Where a game time lies, never before an earlier one; `position` is the next sample that the
+    /// Sample of a game time, never before an earlier one; `position` is the next sample that the
     /// audio half will render.
     pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
         let target = time_s / self.pace() * self.sample_rate_hz;
@@ -153,8 +157,8 @@ impl Clock {
 impl Stands {
     const UNKNOWN: Self = Self { position: 0, since_s: f64::INFINITY, long: false };
 
-    /// Notes where the audio stands at a report, and tells whether game time is to be tied anew: once it has stood for longer than any block, then
-    /// again and again, and when it goes on.
+    /// Notes where the audio stands at a report, and tells whether game time is to be tied anew:
+    /// once it has stood for longer than any block, then again and again, and when it goes on.
     fn look(&mut self, time_s: f64, position: u64) -> bool {
         let goes_on = position != self.position;
         let limit_s = if self.long { STALE_S } else { BREAK_S };
@@ -223,7 +227,8 @@ mod tests {
         assert!(worst < 48.0, "{worst} samples");
     }
 
-    /// Stamps of 60 game ticks a game second at a pace, reported at 60 frames a second in blocks of 256 samples.
+    /// Stamps of 60 game ticks a game second at a pace, reported at 60 frames a second in blocks of
+    /// 256 samples.
     fn leads_at_pace(pace: f64, frames: u64) -> (Clock, Vec<f64>, usize) {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
         let mut jumps = 0;

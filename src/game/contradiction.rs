@@ -50,7 +50,8 @@ pub enum Contradiction {
         /// Number of leaps.
         count: u32,
     },
-    /// The point of a contact hops, as among the corners of what slides, and no velocity says how fast it slides.
+    /// The point of a contact hops, as among the corners of what slides, and no velocity says how
+    /// fast it slides.
     Hops {
         /// Surface of the reports.
         surface: SurfaceId,

@@ -3,15 +3,16 @@
 use crate::model::error::AddError;
 use crate::model::id::Place;
 
-/// What the game half remembers of surfaces, bodies or probes, by place.
+/// Table of surfaces, bodies or probes on the game half, by place.
 pub(crate) struct Places<T> {
     slots: Vec<Slot<T>>,
-    /// What the table holds, for errors.
+    /// Name of what the table holds, for errors.
     kind: &'static str,
 }
 
 struct Slot<T> {
-    /// Of the occupant, or of the next one. A place whose generations are used up stays empty.
+    /// Generation of the occupant, or of the next one. A place whose generations are used up stays
+    /// empty.
     generation: u32,
     occupant: Option<T>,
 }
@@ -33,7 +34,8 @@ impl<T> Places<T> {
         Ok(Place { index: index as u32, generation: self.slots[index].generation })
     }
 
-    /// Puts an occupant under a name that is [`free`](Self::free), or in the place of the one that bears it.
+    /// Puts an occupant under a name that is [`free`](Self::free), or in the place of the one that
+    /// bears it.
     pub(crate) fn set(&mut self, name: Place, occupant: T) {
         if let Some(slot) = self.slot(name) {
             slot.occupant = Some(occupant);

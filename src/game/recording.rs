@@ -14,7 +14,8 @@ pub(crate) struct Recording {
     surfaces: HashMap<SurfaceId, String>,
     bodies: HashMap<BodyId, String>,
     probes: HashMap<ProbeId, String>,
-    /// What the audio half may not have come to yet, with the clock's epoch when it was reported: a [`reset`](Self::reset) drops it.
+    /// Lines that the audio half may not have come to yet, with the clock's epoch when they were
+    /// reported: a [`reset`](Self::reset) drops them.
     waiting: VecDeque<Waiting>,
     kept: Kept,
 }
@@ -24,11 +25,11 @@ struct Waiting {
     line: LogLine,
     /// The clock's epoch when it was reported.
     epoch: u64,
-    /// How far the audio was then, s: what was late already waits for the next block all the same.
+    /// Position of the audio then, s: what was late already waits for the next block all the same.
     told_s: f64,
 }
 
-/// Where a recording goes.
+/// Destination of a recording.
 enum Kept {
     Memory(Vec<LogLine>),
     /// A thread that writes, so that no tick of the game waits for a disk.
@@ -38,7 +39,7 @@ enum Kept {
     },
 }
 
-/// How long lines may wait in the writer's buffer while the game reports nothing.
+/// Time that lines may wait in the writer's buffer while the game reports nothing.
 const FLUSHED_AFTER: Duration = Duration::from_millis(500);
 
 /// Writes lines as they come, until the recording ends; tells how many there were.
@@ -82,7 +83,8 @@ impl Recording {
         }
     }
 
-    /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has dropped: the clock's epoch is `epoch` by now.
+    /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has
+    /// dropped: the clock's epoch is `epoch` by now.
     pub(crate) fn settle(&mut self, time_s: f64, epoch: u64) {
         let come_to = |waits: &Waiting| waits.line.t.max(waits.told_s) < time_s;
         while self.waiting.front().is_some_and(come_to) {
@@ -106,7 +108,7 @@ impl Recording {
         }
     }
 
-    /// What is reported for after `time_s` never happens; edits that waited behind it happen now.
+    /// Drops what is reported for after `time_s`; edits that waited behind it happen now.
     pub(crate) fn reset(&mut self, time_s: f64) {
         self.waiting
             .retain(|Waiting { line, .. }| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
@@ -119,7 +121,8 @@ impl Recording {
         self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0 });
     }
 
-    /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and when, s of audio.
+    /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and
+    /// when, s of audio.
     pub(crate) fn note(&mut self, time_s: f64, (epoch, told_s): (u64, f64), event: &ContactEvent) {
         let event = match *event {
             ContactEvent::Begin { contact, touching, sample } => LogEvent::Begin {
@@ -206,7 +209,7 @@ fn unless_one(factor: f64) -> Option<f64> {
     (factor != 1.0).then_some(factor)
 }
 
-/// What a thing without a name is called: its place, and which of its occupants, from the second on.
+/// Name of a thing without one: its place, and which of its occupants, from the second on.
 fn numbered(kind: &str, Place { index, generation }: Place) -> String {
     if generation == 1 { format!("{kind} {index}") } else { format!("{kind} {index}.{generation}") }
 }

@@ -79,43 +79,45 @@ pub struct Scene {
     recording: Option<Recording>,
     /// Bodies as they were given, for another rate.
     pub(crate) given: HashMap<BodyId, Body>,
-    /// How loud impacts are on a body that does not say: what the level policy has found for those of the scene file.
+    /// Gain of impacts on a body that has none of its own: what the level policy has found for
+    /// those of the scene file.
     pub(crate) strike_gain: f64,
     /// For [`Scene::why_silent`].
     reported: Reported,
-    /// What the reports say twice.
+    /// Motions that the reports give twice.
     motions: Motions,
-    /// What each contact touches, and the place in its body that its newest report told.
+    /// Surface of each contact, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
-    /// The newest impact that sounded on each body that has a least time: when, in samples, and its impulse.
+    /// The newest impact that sounded on each body that has a least time: when, in samples, and its
+    /// impulse.
     sounded: HashMap<BodyId, (f64, f64)>,
     /// Bodies that have rung out, the newest last: the next of the same kind goes out at once.
     pub(crate) rested: Vec<Made>,
 }
 
-/// What a contact touches.
+/// Surface and place of a contact.
 #[derive(Clone, Copy)]
 struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
 }
 
-/// What the game half remembers of a surface.
+/// Surface as the game half knows it.
 #[derive(Clone)]
 pub(crate) struct KnownSurface {
-    /// Whether contacts on it ring something.
+    /// True where contacts on it ring something.
     rings: bool,
-    /// How it looks, if it changes.
+    /// Picture, if it changes.
     picture: Option<Arc<MovingPicture>>,
     place: Place,
     sheet: Sheet,
     tip_law: Option<TipLaw>,
     body: Option<BodyId>,
-    /// Whether contacts on it stick and slip.
+    /// True where contacts on it stick and slip.
     rubs: bool,
 }
 
-/// What the game half remembers of a body.
+/// Body as the game half knows it.
 #[derive(Clone)]
 pub(crate) struct KnownBody {
     material: Material,
@@ -127,7 +129,7 @@ pub(crate) struct KnownBody {
 }
 
 impl KnownBody {
-    /// Whether its motion under a contact is known.
+    /// Tests whether its motion under a contact is known.
     fn can_be_rubbed(&self) -> bool {
         self.weighs || self.field.is_some()
     }
@@ -167,13 +169,14 @@ impl Scene {
         }
     }
 
-    /// How the engine was built.
+    /// Configuration of the engine.
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// Adds a probe that contacts may touch with: a [preset](crate::PROBE_PRESETS) or one's own. It stays as long as the scene.
+    /// Adds a probe that contacts may touch with: a [preset](crate::PROBE_PRESETS) or one's own. It
+    /// stays as long as the scene.
     ///
     /// # Errors
     /// When every place is taken, a number is outside its range, or the queue is full.
@@ -285,11 +288,13 @@ impl Scene {
         ))
     }
 
-    /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
-    /// documented: solid noise its parameters, a scaled source a [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own
-    /// whatever type it looks for. A change that no source of the surface takes (another type, or impossible numbers) is counted as
-    /// quarantined. It holds from the stamp of the last event on, after everything that is queued already: a game that reports ahead gets it
-    /// then, not now. Recordings hold no such change.
+    /// Changes parameters of a surface's source while it is touched, without a click. What a source
+    /// takes is said where it is documented: solid noise its parameters, a scaled source a
+    /// [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own whatever type it looks for.
+    /// A change that no source of the surface takes (another type, or impossible numbers) is
+    /// counted as quarantined. It holds from the stamp of the last event on, after everything that
+    /// is queued already: a game that reports ahead gets it then, not now. Recordings hold no such
+    /// change.
     ///
     /// # Errors
     /// When the surface is not in this scene or the queue is full.
@@ -312,7 +317,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few milliseconds.
+    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few
+    /// milliseconds.
     ///
     /// # Errors
     /// When there is no such channel, the gain is not in 0–10, or the queue is full.
@@ -348,16 +354,17 @@ impl Scene {
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
     }
 
-    /// Whether another move might be held back because the audio half lags behind.
+    /// Tests whether another move might be held back because the audio half lags behind.
     pub(crate) fn is_filling(&mut self) -> bool {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
     }
 
-    /// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time, and
-    /// later ones keep their exact distance to it. For a level that restarts, a game that was loaded or that was
-    /// paused under [`ClockMode::Exact`](crate::ClockMode::Exact); a live clock finds out by itself, within a report.
-    /// Events that still wait for their time are dropped and counted as superseded. Contacts that touch go on until their next
-    /// report, their end or the time-out.
+    /// Game time begins anew: the next report holds at the sample that is rendered next, whatever
+    /// its time, and later ones keep their exact distance to it. For a level that restarts, a game
+    /// that was loaded or that was paused under [`ClockMode::Exact`](crate::ClockMode::Exact); a
+    /// live clock finds out by itself, within a report. Events that still wait for their time are
+    /// dropped and counted as superseded. Contacts that touch go on until their next report, their
+    /// end or the time-out.
     ///
     /// # Errors
     /// When the queue is full.
@@ -373,7 +380,7 @@ impl Scene {
         Ok(())
     }
 
-    /// What the engine did so far.
+    /// Statistics of the engine so far.
     #[must_use]
     pub fn stats(&self) -> Stats {
         let stats = self.counters.snapshot();

@@ -1,8 +1,9 @@
 //! Why nothing is heard or felt: what the game half knows of it, in words.
 //!
-//! Nothing that is refused, lost or left out stops a game, so a mistake of its own shows as silence.
-//! [`Scene::why_silent`](crate::Scene::why_silent) answers with what speaks against sound, the likeliest
-//! reason first. It reads counters only and can be asked at any time, of a scene that sounds as well.
+//! Nothing that is refused, lost or left out stops a game, so a mistake of its own shows as
+//! silence. [`Scene::why_silent`](crate::Scene::why_silent) answers with what speaks against sound,
+//! the likeliest reason first. It reads counters only and can be asked at any time, of a scene that
+//! sounds as well.
 
 use crate::game::contradiction::Contradiction;
 use crate::link::stats::Stats;
@@ -31,9 +32,9 @@ pub enum SilentBecause {
     /// Events were handed back for what they say.
     #[error("{count} of {of} events were refused, the last because of {last}")]
     Refused {
-        /// How many.
+        /// Number.
         count: u64,
-        /// Of how many reported ones.
+        /// Number of reported ones.
         of: u64,
         /// Why the last one was.
         last: Refusal,
@@ -44,7 +45,7 @@ pub enum SilentBecause {
          or raise Config::queue_capacity"
     )]
     Dropped {
-        /// How many.
+        /// Number.
         count: u64,
     },
     /// The game's clock runs ahead of the audio's.
@@ -62,7 +63,7 @@ pub enum SilentBecause {
          report its \"begin\" first, under the same number"
     )]
     Orphaned {
-        /// How many.
+        /// Number.
         count: u64,
     },
     /// Contacts faded because their moves stayed away.
@@ -71,7 +72,7 @@ pub enum SilentBecause {
          contact more often than that, with times in seconds, or raise Config::contact_timeout_s"
     )]
     Lapsed {
-        /// How many times.
+        /// Number of times.
         count: u64,
         /// [`Config::contact_timeout_s`].
         timeout_s: f64,
@@ -82,7 +83,7 @@ pub enum SilentBecause {
          are over, or raise Config::max_contacts"
     )]
     Stolen {
-        /// How many times.
+        /// Number of times.
         count: u64,
         /// [`Config::max_contacts`].
         limit: usize,
@@ -93,7 +94,7 @@ pub enum SilentBecause {
          another kind of surface; check relief_m, normal_force_n, and what change_surface was given"
     )]
     Quarantined {
-        /// How many.
+        /// Number.
         count: u64,
     },
     /// Reports beyond what the models reach counted as their limits.
@@ -102,7 +103,7 @@ pub enum SilentBecause {
          unit is the centimetre has to report metres"
     )]
     Held {
-        /// How many.
+        /// Number.
         count: u64,
     },
     /// Impacts came too late to be played.
@@ -111,7 +112,7 @@ pub enum SilentBecause {
          everything came before their turn; let the audio callback call Renderer::render without a break"
     )]
     Stale {
-        /// How many.
+        /// Number.
         count: u64,
     },
     /// Contacts lasted longer than the engine plays.
@@ -120,7 +121,7 @@ pub enum SilentBecause {
          micro-collision 0.04 s) and were shortened; let what strikes or what is struck be stiffer, or lighter"
     )]
     Shortened {
-        /// How many.
+        /// Number.
         count: u64,
         /// Longest contact of an impact, s.
         longest_s: f64,
@@ -131,7 +132,7 @@ pub enum SilentBecause {
          softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
     )]
     Leapt {
-        /// How many times.
+        /// Number of times.
         count: u64,
     },
     /// Work was left out because blocks were late.
@@ -140,7 +141,7 @@ pub enum SilentBecause {
          build with optimisation, or set Config::shed_load = false"
     )]
     Shed {
-        /// How many, as [`Stats::shed`] counts.
+        /// Number, as [`Stats::shed`] counts.
         count: u64,
     },
     /// A limiter holds down what is far too loud, and what plays beside it.
@@ -176,7 +177,7 @@ pub enum SilentBecause {
     NeverMoved,
 }
 
-/// What the game half remembers of its reports in order to answer.
+/// Reports that the game half keeps in order to answer.
 #[derive(Debug, Default)]
 pub(crate) struct Reported {
     accepted: u64,
@@ -225,7 +226,7 @@ impl Reported {
         }
     }
 
-    /// What speaks against sound, the likeliest reason first.
+    /// Reasons against sound, the likeliest first.
     pub(crate) fn why_silent(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
         let mut because = self.lost(stats, config);
         if self.accepted == 0 && because.is_empty() {
@@ -248,7 +249,7 @@ impl Reported {
         because
     }
 
-    /// What was reported and did not arrive.
+    /// Reports that did not arrive.
     fn lost(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
         let mut because = Vec::new();
         if let Some(last) = self.last_refusal {
@@ -281,7 +282,7 @@ impl Reported {
 }
 
 impl SilentBecause {
-    /// How often it happened, 1 for a contradiction; 0 for what is a state.
+    /// Number of times that it happened, 1 for a contradiction; 0 for what is a state.
     #[must_use]
     pub fn count(&self) -> u64 {
         match self {

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
-    /// What a contact does, when it holds, and where on a body that has shapes.
+    /// Activity of a contact, its time, and its place on a body that has shapes.
     Event { stamp: Stamp, epoch: u64, event: ContactEvent, place: Option<StrikePlace> },
     /// A rigid striker hits a body, and perhaps rings itself.
     Strike {
@@ -33,7 +33,7 @@ pub(crate) enum Message {
     },
     /// A probe for a new place.
     AddProbe { index: usize, probe: Box<PreparedProbe> },
-    /// What was sent before belongs to a game time that has ended.
+    /// Mark that what was sent before belongs to a game time that has ended.
     Reset,
     /// A surface for a new or used place.
     SetSurface { id: SurfaceId, surface: Box<SurfaceSlot> },
@@ -41,7 +41,8 @@ pub(crate) enum Message {
     ChangeSurface { slot: usize, change: Box<dyn Any + Send + Sync> },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
-    /// A body for a new or used place, the bus it plays on, its gain, and how strokes on its surfaces excite it from now on.
+    /// A body for a new or used place, the bus it plays on, its gain, and how strokes on its
+    /// surfaces excite it from now on.
     SetBody { id: BodyId, body: Made, bus: usize, sends: Sends, gain: f64, stroking: Stroking },
     /// A body sounds on another bus from now on, and on no other.
     SetBodyBus { slot: usize, bus: usize },
@@ -51,7 +52,7 @@ pub(crate) enum Message {
     SetBodyGain { slot: usize, gain: f64 },
     /// Everything that leaves fades to nothing, or comes back.
     Mute(bool),
-    /// The same, and contacts wait for their next report.
+    /// Mark that also lets contacts wait for their next report.
     Pause(bool),
     /// Every contact ends, and everything that rings is damped.
     FadeAll,
@@ -75,7 +76,7 @@ pub(crate) struct Made {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Felt {
     pub(crate) channel: usize,
-    /// What of the hand feels it; none = the engine's own probe.
+    /// Probe of the hand that feels it; none = the engine's own.
     pub(crate) probe: Option<usize>,
 }
 

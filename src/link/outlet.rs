@@ -1,8 +1,9 @@
 //! Ports: further ways out of a running engine, each a kind of its own.
 //!
-//! A port has two ends. The [`Outlet`] lives on the audio half, which shows it what leaves; the reading end lives on any one other
-//! thread. Between them lies whatever the kind puts there, bounded and without locks. A kind is one type that makes both
-//! ([`PortKind`]); those of this crate are in [`live::ports`](crate::live::ports), and another crate may add its own.
+//! A port has two ends. The [`Outlet`] lives on the audio half, which shows it what leaves; the
+//! reading end lives on any one other thread. Between them lies whatever the kind puts there,
+//! bounded and without locks. A kind is one type that makes both ([`PortKind`]); those of this
+//! crate are in [`live::ports`](crate::live::ports), and another crate may add its own.
 
 use crate::link::tap::ContactBlock;
 use crate::model::error::AddError;
@@ -10,16 +11,17 @@ use crate::model::id::SurfaceId;
 use asperity_texture::moving_picture::MovingPicture;
 use std::sync::Arc;
 
-/// The audio half's end of a port. It must not allocate, lock or wait. It is shown every channel and bus, in blocks of the caller's length or parts
-/// of it, and picks what it wants.
+/// The audio half's end of a port. It must not allocate, lock or wait. It is shown every channel
+/// and bus, in blocks of the caller's length or parts of it, and picks what it wants.
 pub trait Outlet: Send + Sync {
     /// Samples of a haptic channel as they leave, from sample `first` on.
     fn haptic(&mut self, _channel: usize, _first: u64, _samples: &[f32]) {}
 
-    /// The same of an audio bus.
+    /// Takes samples of an audio bus.
     fn bus(&mut self, _bus: usize, _first: u64, _samples: &[f32]) {}
 
-    /// Whether contacts are to be shown; while any port watches, slopes are computed that nobody needs otherwise.
+    /// Tests whether contacts are to be shown; while any port watches, slopes are computed that are
+    /// not needed otherwise.
     fn watches_contacts(&self) -> bool {
         false
     }
@@ -30,21 +32,21 @@ pub trait Outlet: Send + Sync {
     /// Every contact has been shown up to this sample, which is not among them.
     fn shown(&mut self, _before: u64) {}
 
-    /// Whether nobody reads any more; then it is taken away and freed by the game thread.
+    /// Tests whether no reader is left; then it is taken away and freed by the game thread.
     fn is_closed(&self) -> bool;
 }
 
-/// What the engine tells a port that is being opened.
+/// Data of the engine for a port that is being opened.
 pub struct PortSetup<'a> {
     /// Rate of the samples that leave, Hz.
     pub sample_rate_hz: f64,
-    /// How many haptic channels there are.
+    /// Number of haptic channels.
     pub haptic_channels: usize,
-    /// How many audio buses there are.
+    /// Number of audio buses.
     pub audio_buses: usize,
     /// Contacts that can sound at the same time.
     pub voices: usize,
-    /// What a surface that changes looks like.
+    /// Picture of a surface that changes.
     pub(crate) picture: &'a dyn Fn(SurfaceId) -> Option<Arc<MovingPicture>>,
 }
 
@@ -102,7 +104,8 @@ pub trait PortKind {
     /// Makes both ends.
     ///
     /// # Errors
-    /// When what is wanted does not exist ([`AddError::Unknown`] with its name, [`AddError::UnknownBus`]) or a number is outside its range.
+    /// When what is wanted does not exist ([`AddError::Unknown`] with its name,
+    /// [`AddError::UnknownBus`]) or a number is outside its range.
     fn open(self, setup: &PortSetup<'_>) -> Result<Opened<Self::Port>, AddError>;
 }
 

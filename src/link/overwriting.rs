@@ -1,17 +1,19 @@
 //! Overwriting ring: one writer that never waits, one reader that comes when it likes.
 //!
-//! A reader that is late loses the oldest, and is told how much. Every word is an atomic, so that a word that is overwritten while it
-//! is read is no data race but an old or a new word; which of them may be new tells the writer's claim:
+//! A reader that is late loses the oldest, and is told how much. Every word is an atomic, so that a
+//! word that is overwritten while it is read is no data race but an old or a new word; which of
+//! them may be new tells the writer's claim:
 //!
 //! ```text
 //! writer: claim n words → write them → publish         reader: copy what is published → look at the claim
 //! ```
 //!
-//! What was copied from before *claim − capacity* counts as lost (a sequence lock; Boehm, "Can seqlocks get along with programming
-//! language memory models?", 2012, §4).
+//! What was copied from before *claim − capacity* counts as lost (a sequence lock; Boehm, "Can
+//! seqlocks get along with programming language memory models?", 2012, §4).
 //!
-//! A claim is released and acquired like a publication: whoever skips to what a claim leaves has also seen every publication before
-//! it, so that the reader never stands beyond what is published. `tests/models` tries it under every order that a processor may choose.
+//! A claim is released and acquired like a publication: whoever skips to what a claim leaves has
+//! also seen every publication before it, so that the reader never stands beyond what is published.
+//! `tests/models` tries it under every order that a processor may choose.
 
 use crate::link::threads::Arc;
 use crate::link::threads::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering, fence};
@@ -56,7 +58,8 @@ pub fn ring(records: usize, words: usize) -> (Writer, Reader) {
 }
 
 impl Writer {
-    /// Writes whole records; the oldest give way. What is longer than the ring passes through it piece by piece.
+    /// Writes whole records; the oldest give way. What is longer than the ring passes through it
+    /// piece by piece.
     pub fn write(&mut self, mut words: impl ExactSizeIterator<Item = u32>) {
         while words.len() > 0 {
             let end = self.at + words.len().min(self.ring.words.len()) as u64;
@@ -71,7 +74,7 @@ impl Writer {
         }
     }
 
-    /// Whether the reader has gone.
+    /// Tests whether the reader has gone.
     pub fn is_closed(&self) -> bool {
         self.ring.closed.load(Ordering::Relaxed)
     }
@@ -104,7 +107,7 @@ impl Reader {
         }
     }
 
-    /// How many words wait.
+    /// Number of words that wait.
     pub fn waiting(&self) -> u64 {
         let capacity = self.ring.words.len() as u64;
         (self.ring.published.load(Ordering::Acquire) - self.at).min(capacity)
@@ -163,7 +166,8 @@ mod tests {
         assert_eq!((reader.lost(), reader.waiting()), (13, 0));
     }
 
-    /// A reader that races a writer many times faster: every record is whole, in order, and none is unaccounted for.
+    /// A reader that races a writer many times faster: every record is whole, in order, and none is
+    /// unaccounted for.
     #[test]
     fn a_race_tears_no_record_and_loses_none_in_silence() {
         race(64, 400_000);

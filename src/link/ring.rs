@@ -22,12 +22,12 @@ impl<T> Sender<T> {
         self.0.get_mut().push(item).map_err(|rtrb::PushError::Full(item)| item)
     }
 
-    /// How many items are sure to fit.
+    /// Number of items that are sure to fit.
     pub(crate) fn free(&mut self) -> usize {
         self.0.get_mut().slots()
     }
 
-    /// How many items the ring holds at most.
+    /// Largest number of items that the ring holds.
     pub(crate) fn capacity(&mut self) -> usize {
         self.0.get_mut().buffer().capacity()
     }
@@ -39,7 +39,7 @@ impl<T> Receiver<T> {
         self.0.get_mut().peek().ok()
     }
 
-    /// How many items wait.
+    /// Number of items that wait.
     #[cfg(feature = "device")]
     pub(crate) fn waiting(&mut self) -> usize {
         self.0.get_mut().slots()

@@ -9,7 +9,8 @@ macro_rules! counters {
         #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
         pub struct Stats {
             $($(#[doc = $doc])+ pub $name: u64,)+
-            /// Share of the time budget that the last blocks took, as told by the device; 0 offline.
+            /// Share of the time budget that the last blocks took, as told by the device; 0
+            /// offline.
             pub load: f32,
             /// Peak level of each audio bus.
             pub bus_levels: BusLevels,
@@ -24,7 +25,8 @@ macro_rules! counters {
             pub(crate) bus_peak_bits: Box<[AtomicU32]>,
             /// Resets that the game half has asked for.
             pub(crate) resets_asked: AtomicU64,
-            /// The newest stamp: what was stamped further ahead before game time was tied anew is due by then.
+            /// The newest stamp: what was stamped further ahead before game time was tied anew is
+            /// due by then.
             pub(crate) newest_bits: AtomicU64,
             /// The game clock's epoch: strikes of an earlier one have come too late.
             pub(crate) epoch: AtomicU64,
@@ -66,7 +68,8 @@ counters! {
     micro_collisions,
     /// Blows of a probe that had left the ground: contact forces beyond thirty times what pressed.
     blows,
-    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples: one at a time sticks and slips.
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
+    /// samples: one at a time sticks and slips.
     rubs_crowded_out,
     /// Events handed back because the queue was full.
     dropped,
@@ -80,38 +83,43 @@ counters! {
     debounced,
     /// Contacts faded because nothing was heard of them for the time-out.
     lapsed,
-    /// Contacts that were suddenly elsewhere, or further away after a silence than a path makes up within a second:
-    /// faded where they were, risen where they are.
+    /// Contacts that were suddenly elsewhere, or further away after a silence than a path makes up
+    /// within a second: faded where they were, risen where they are.
     jumps,
-    /// Reports of no force: the first in a row holds the force before it, more fade the contact until it
-    /// presses again.
+    /// Reports of no force: the first in a row holds the force before it, more fade the contact
+    /// until it presses again.
     unpressed,
     /// Events refused on the game side: bad numbers, unknown names, time running backwards.
     refused,
-    /// Reports with a force, speed, mass or radius beyond what the models reach, which counted as the limit.
+    /// Reports with a force, speed, mass or radius beyond what the models reach, which counted as
+    /// the limit.
     held,
     /// Contacts reset on the audio half after their numbers went bad.
     quarantined,
     /// Events that arrived after the sample they were stamped for.
     late,
-    /// Impacts dropped because audio stood still (for more than 0.25 s of game time) when they were reported, and more than 0.1 s had gone by
-    /// when it went on; or because a reset, a pause or a fade of everything came before their turn.
+    /// Impacts dropped because audio stood still (for more than 0.25 s of game time) when they were
+    /// reported, and more than 0.1 s had gone by when it went on; or because a reset, a pause or a
+    /// fade of everything came before their turn.
     stale,
-    /// Impacts dropped because they came sooner after one that was as strong than the least time of their body
-    /// ([`Body::least_time_s`](crate::Body::least_time_s)).
+    /// Impacts dropped because they came sooner after one that was as strong than the least time of
+    /// their body ([`Body::least_time_s`](crate::Body::least_time_s)).
     too_soon,
-    /// Bodies that were removed or replaced and faded before they had rung out, because more than 64 of them rang.
+    /// Bodies that were removed or replaced and faded before they had rung out, because more than
+    /// 64 of them rang.
     given_way,
-    /// Times the game clock was tied to the audio clock anew: pauses, restarts, stamps that were off.
+    /// Times the game clock was tied to the audio clock anew: pauses, restarts, stamps that were
+    /// off.
     clock_jumps,
     /// Times the game was found to run at another pace: slow motion, fast motion, back to its own.
     clock_paces,
-    /// How far ahead of the audio the latest event was stamped, samples. Live, more than some blocks' worth says
-    /// why it is silent: game and audio are not tied ([`Config::live`](crate::Config::live)).
+    /// Lead of the latest event's stamp over the audio, samples. Live, more than some blocks' worth
+    /// says why it is silent: game and audio are not tied ([`Config::live`](crate::Config::live)).
     ahead,
     /// By how much the peak limiters have turned down at most, whole dB.
     limiter_db,
-    /// Pieces of work left out because blocks ran late: a group of modes for 64 samples, or a contact.
+    /// Pieces of work left out because blocks ran late: a group of modes for 64 samples, or a
+    /// contact.
     shed,
     /// Contacts sounding now.
     contacts,
@@ -119,8 +127,8 @@ counters! {
 
 impl Counters {
     pub(crate) fn add(cell: &AtomicU64, count: u64) {
-        // Each cell has a single writer, so a plain read-modify-write loses nothing; it is atomic so
-        // that readers never see half a number.
+        // Each cell has a single writer, so a plain read-modify-write loses nothing; it is atomic
+        // so that readers never see half a number.
         cell.store(cell.load(Relaxed).wrapping_add(count), Relaxed);
     }
 

@@ -27,7 +27,8 @@ pub struct ContactBlock<'a> {
     pub impulse_n_s: &'a [f64],
     /// 3-D force on the finger, N: along u, v and out of the surface.
     pub force_n: &'a [[f64; 3]],
-    /// What the device behind the surface gives at most, N; infinite where nobody says. `force_n` keeps to it, and what is made of it has to.
+    /// Largest force of the device behind the surface, N; infinite where none is given. `force_n`
+    /// keeps to it, and what is made of it has to.
     pub cap_n: &'a [f64],
 }
 
@@ -46,13 +47,15 @@ pub struct ContactBlock<'a> {
 /// }
 /// ```
 pub trait Tap {
-    /// Whether blocks are to be shown at all; a tap that says no costs nothing.
+    /// Tests whether blocks are to be shown at all; a tap that says no costs nothing.
     fn is_watching(&self) -> bool {
         true
     }
 
-    /// Whether samples are shown at the rate inside ([`Config::inner_rate_hz`](crate::Config::inner_rate_hz)), and not only those that leave;
-    /// [`ContactBlock::first_sample`] then counts inner samples. While a port watches too, it gets what it expects and this is no.
+    /// Tests whether samples are shown at the rate inside
+    /// ([`Config::inner_rate_hz`](crate::Config::inner_rate_hz)), and not only those that leave;
+    /// [`ContactBlock::first_sample`] then counts inner samples. While a port watches too, it gets
+    /// what it expects and this is no.
     fn wants_inner_samples(&self) -> bool {
         false
     }
@@ -60,7 +63,8 @@ pub trait Tap {
     /// Called once for each contact and stretch of samples, in order of time.
     fn contact(&mut self, block: &ContactBlock<'_>);
 
-    /// Asked by an offline render before each block, with the samples done and the samples wanted: `false` stops it. Nobody asks live.
+    /// Asked by an offline render before each block, with the samples done and the samples wanted:
+    /// `false` stops it. Nobody asks live.
     fn goes_on(&mut self, _done: u64, _of: u64) -> bool {
         true
     }

@@ -4,14 +4,15 @@ use crate::audio::renderer::Renderer;
 use crate::link::ring::Sender;
 use crate::model::bus::MAX_BUSES;
 
-/// Longest stretch rendered at once, frames; longer callbacks are split, so no memory depends on what a
-/// device promised about its block size.
+/// Longest stretch rendered at once, frames; longer callbacks are split, so no memory depends on
+/// what a device promised about its block size.
 const CHUNK_FRAMES: usize = 512;
 
 /// Device channels of each audio bus and of each actuator, counted from 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChannelMap {
-    /// Channels of each audio bus, in order. Buses beyond these play on the channels of the first, so that none is lost.
+    /// Channels of each audio bus, in order. Buses beyond these play on the channels of the first,
+    /// so that none is lost.
     pub audio: Vec<Vec<usize>>,
     /// Channel of each actuator, in order.
     pub haptic: Vec<usize>,
@@ -26,8 +27,9 @@ pub struct ChannelMapError {
 }
 
 impl ChannelMap {
-    /// The four USB channels of a `DualSense` controller at 48 kHz: speaker left and right, actuator left
-    /// and right. Source: user reports of the USB descriptors; over Bluetooth there is no such device.
+    /// The four USB channels of a `DualSense` controller at 48 kHz: speaker left and right,
+    /// actuator left and right. Source: user reports of the USB descriptors; over Bluetooth there
+    /// is no such device.
     #[must_use]
     pub fn dualsense() -> Self {
         Self { audio: vec![vec![0, 1]], haptic: vec![2, 3] }
@@ -39,7 +41,8 @@ impl ChannelMap {
         Self { audio: vec![vec![0, 1]], haptic: (2..2 + actuators).collect() }
     }
 
-    /// Reads `audio=0,1 haptic=2,3` (either part may be missing) or `dualsense`. A further `audio=…` is the next bus's.
+    /// Reads `audio=0,1 haptic=2,3` (either part may be missing) or `dualsense`. A further
+    /// `audio=…` is the next bus's.
     ///
     /// # Errors
     /// When a part is unknown, a channel is no number below 256, or two signals share a channel.
@@ -78,7 +81,8 @@ impl ChannelMap {
     }
 }
 
-/// A renderer behind an interleaved callback of any size. Nothing in [`fill`](Self::fill) allocates.
+/// A renderer behind an interleaved callback of any size. Nothing in [`fill`](Self::fill)
+/// allocates.
 pub struct Interleaver {
     renderer: Renderer,
     map: ChannelMap,
@@ -149,7 +153,8 @@ impl Interleaver {
         self.tee = rings;
     }
 
-    /// Gives the renderer back, for a device at another rate ([`Scene::at_rate`](crate::Scene::at_rate)).
+    /// Gives the renderer back, for a device at another rate
+    /// ([`Scene::at_rate`](crate::Scene::at_rate)).
     #[must_use]
     pub fn into_renderer(self) -> Renderer {
         self.renderer

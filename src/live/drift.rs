@@ -1,10 +1,11 @@
 //! Two devices, two clocks: a small resampler that holds the fill of the buffer between them.
 //!
-//! The audio callback is the clock master and pushes haptic frames; the haptic callback pulls them at
-//! its own pace. The reading speed is 1 plus a small correction, proportional and integral in the
-//! deviation of the smoothed fill from its target, limited to ±[`MAX_CORRECTION`]: crystals differ by
-//! up to ±200 ppm, and 0.1 % of pitch is far below what skin can tell. Frames between samples are read
-//! by a cubic (Catmull–Rom); for haptics below 1 kHz at 44.1 kHz its error is below −80 dB.
+//! The audio callback is the clock master and pushes haptic frames; the haptic callback pulls them
+//! at its own pace. The reading speed is 1 plus a small correction, proportional and integral in
+//! the deviation of the smoothed fill from its target, limited to ±[`MAX_CORRECTION`]: crystals
+//! differ by up to ±200 ppm, and 0.1 % of pitch is far below what skin can tell. Frames between
+//! samples are read by a cubic (Catmull–Rom); for haptics below 1 kHz at 44.1 kHz its error is
+//! below −80 dB.
 
 /// Largest change of reading speed.
 pub const MAX_CORRECTION: f64 = 2e-3;
@@ -98,8 +99,8 @@ mod tests {
     use super::*;
     use std::collections::VecDeque;
 
-    /// Ten minutes of two callbacks of unequal size whose clocks differ by `ppm`; returns the range of
-    /// the fill over the last nine and the reader.
+    /// Ten minutes of two callbacks of unequal size whose clocks differ by `ppm`; returns the range
+    /// of the fill over the last nine and the reader.
     fn simulate(ppm: f64) -> (usize, usize, DriftResampler) {
         let rate = 48_000.0;
         let mut ring = VecDeque::new();

@@ -1,4 +1,5 @@
-//! Real-time outputs: sound cards, a paced device that nobody hears, and which signal goes to which channel.
+//! Real-time outputs: sound cards, a paced device that nobody hears, and which signal goes to which
+//! channel.
 
 pub mod channel_map;
 #[cfg(feature = "device")]

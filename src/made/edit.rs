@@ -11,7 +11,8 @@ use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::Surface;
 use std::path::Path;
 
-/// Makes the surfaces of a recording that the game's own code made, by name: `None` for one it does not know.
+/// Makes the surfaces of a recording that the game's own code made, by name: `None` for one it does
+/// not know.
 pub type MakeSurface<'a> = dyn FnMut(&str, &Names) -> Option<Surface> + 'a;
 
 /// Makers of the edits of a recording that is rendered again.

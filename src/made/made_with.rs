@@ -16,6 +16,7 @@ pub(crate) struct Maker<'a> {
     pub own: &'a [(&'a str, MakeSource)],
     /// For sources that name none.
     pub seed: u64,
-    /// Place for the workers of sand that is simulated elsewhere; none = it is simulated within the source.
+    /// Place for the workers of sand that is simulated elsewhere; none = it is simulated within the
+    /// source.
     pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
 }

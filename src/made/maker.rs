@@ -18,7 +18,8 @@ use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
 impl<'a> Maker<'a> {
-    /// A body, on the bus that it names; its impacts are as loud as it says, or else as `strike_gain` does.
+    /// A body, on the bus that it names; its impacts are as loud as it says, or else as
+    /// `strike_gain` does.
     pub fn body(
         &self,
         entry: &BodyEntry,
@@ -63,8 +64,8 @@ impl<'a> Maker<'a> {
         Ground { maker: *self, extent, wrap: entry.wrap, frame: entry.frame }
     }
 
-    /// A surface, on the body that it names. On one of a `material` that the scene names it has that material's finish where it says
-    /// nothing else.
+    /// A surface, on the body that it names. On one of a `material` that the scene names it has
+    /// that material's finish where it says nothing else.
     pub fn surface(
         &self,
         entry: &SurfaceEntry,
@@ -76,7 +77,8 @@ impl<'a> Maker<'a> {
         let surface = Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::told)?;
         let surface = match (material, &entry.source) {
             (Some(material), Source::Flat) => surface.of(material),
-            // How rough a pictured surface is, its material does not tell: it may be glazed or sanded.
+            // How rough a pictured surface is, its material does not tell: it may be glazed or
+            // sanded.
             (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
                 surface.of(material).roughness(Roughness::FromSource)
             }
@@ -148,7 +150,8 @@ pub(crate) fn actuator(
     })
 }
 
-/// Exponent of a finger's displacement over what presses: metres that a scene writes are the pad's own.
+/// Exponent of a finger's displacement over what presses: metres that a scene writes are the pad's
+/// own.
 pub(crate) fn felt_force_exponent(entry: &ActuatorEntry) -> f64 {
     let by_policy = entry.full_scale.is_none() && entry.settings.output == Quantity::Displacement;
     entry.felt_force_exponent.unwrap_or(if by_policy { FELT_FORCE_EXPONENT } else { 0.0 })

@@ -1,7 +1,9 @@
-//! Maps, made once: a picture that was read, decoded and filtered serves everything of the scene that asks for the same one.
+//! Maps, made once: a picture that was read, decoded and filtered serves everything of the scene
+//! that asks for the same one.
 //!
-//! A scene whose levels follow from a reference stroke is built twice, and surfaces share pictures; decoding and filtering three pairs of
-//! 1024² maps takes half a second. A copy of a [`HeightMap`] shares its samples.
+//! A scene whose levels follow from a reference stroke is built twice, and surfaces share pictures;
+//! decoding and filtering three pairs of 1024² maps takes half a second. A copy of a [`HeightMap`]
+//! shares its samples.
 
 use crate::files::storage::{self, Pixels};
 use crate::files::{FileError, Files};

@@ -1,4 +1,5 @@
-//! Making: from what a scene file or a recording says of bodies, surfaces and actuators to what the engine takes.
+//! Making: from what a scene file or a recording says of bodies, surfaces and actuators to what the
+//! engine takes.
 
 pub(crate) mod edit;
 mod made_with;

@@ -153,7 +153,8 @@ impl Ground<'_> {
         }
         design.size = entry.cells.map_or(design.size, |cells| cells as usize);
         let relief = design.surface().map_err(told)?;
-        // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
+        // The relief is isotropic and repeats in a square; a surface of another shape is cut from
+        // it.
         let side_m = self.extent.width_m.max(self.extent.height_m);
         let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
         let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(FileError::told)?);

@@ -19,8 +19,8 @@ pub(crate) fn within(field: &'static str, value: f64, range: Range) -> Result<f6
     if range.holds(value) { Ok(value) } else { Err(BadValue { field, value, expected: range.words }) }
 }
 
-/// A magnitude of a report: beyond its range it is held at the limit, and `held` says so. What is not finite is refused, and so is a
-/// negative one where none can be.
+/// A magnitude of a report: beyond its range it is held at the limit, and `held` says so. What is
+/// not finite is refused, and so is a negative one where none can be.
 ///
 /// # Errors
 /// Names the field and what it must be.

@@ -68,8 +68,10 @@ impl Body {
 }
 
 impl Body {
-    /// Its mass: what has no [shapes](crate::ModeShapes) can be rubbed ([`Surface::stick_slip`](crate::Surface::stick_slip)) if this is known. Each of its
-    /// modes then moves as a string's of this mass where it swings most, and elsewhere as much less as the strike position says.
+    /// Its mass: what has no [shapes](crate::ModeShapes) can be rubbed
+    /// ([`Surface::stick_slip`](crate::Surface::stick_slip)) if this is known. Each of its modes
+    /// then moves as a string's of this mass where it swings most, and elsewhere as much less as
+    /// the strike position says.
     #[must_use]
     pub fn mass_kg(mut self, mass_kg: f64) -> Self {
         self.mass_kg = Some(mass_kg);
@@ -84,16 +86,18 @@ impl Body {
         self
     }
 
-    /// Least time between equal sounds, 0–60 s: an impact that comes sooner after the last one that sounded, and is no stronger, is
-    /// dropped and counted ([`Stats::too_soon`](crate::Stats::too_soon)). 0, which is usual, drops none.
+    /// Least time between equal sounds, 0–60 s: an impact that comes sooner after the last one that
+    /// sounded, and is no stronger, is dropped and counted
+    /// ([`Stats::too_soon`](crate::Stats::too_soon)). 0, which is usual, drops none.
     #[must_use]
     pub fn least_time_s(mut self, least_time_s: f64) -> Self {
         self.least_time_s = least_time_s;
         self
     }
 
-    /// Gain of impacts beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is then far above a
-    /// stroke. A scene file that leaves it out has the [level policy](crate::open::levels) find it.
+    /// Gain of impacts beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is
+    /// then far above a stroke. A scene file that leaves it out has the [level
+    /// policy](crate::open::levels) find it.
     #[must_use]
     pub fn strike_gain(mut self, gain: f64) -> Self {
         self.strike_gain = gain;

@@ -1,4 +1,5 @@
-//! An audio bus: where the sound of bodies leaves, so that a game can place each body somewhere else.
+//! An audio bus: where the sound of bodies leaves, so that a game can place each body somewhere
+//! else.
 
 /// Most buses of one engine.
 pub const MAX_BUSES: usize = 64;
@@ -13,8 +14,9 @@ pub const MAX_BUSES: usize = 64;
 /// assert!(config.build().is_ok());
 /// ```
 ///
-/// Here a gain is 1 and nothing limits unless said; a scene file that leaves `gain` out has the level policy find it, and a limiter behind. A sum
-/// of panned buses may exceed 1 where each keeps within: limit after the mix.
+/// Here a gain is 1 and nothing limits unless said; a scene file that leaves `gain` out has the
+/// level policy find it, and a limiter behind. A sum of panned buses may exceed 1 where each keeps
+/// within: limit after the mix.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AudioBus {
@@ -22,13 +24,15 @@ pub struct AudioBus {
     pub gain: f64,
     /// Keeps the output within ±1 by a peak limiter.
     pub limit: bool,
-    /// Sound pressure that full scale stands for, Pa, where somebody knows it. While a machine is late, modes are left out as they are missed at the
-    /// level that follows from it; without, the loudest mode of a body is taken to be at 70 dB SPL. No sample depends on it otherwise.
+    /// Sound pressure that full scale stands for, Pa, where somebody knows it. While a machine is
+    /// late, modes are left out as they are missed at the level that follows from it; without, the
+    /// loudest mode of a body is taken to be at 70 dB SPL. No sample depends on it otherwise.
     pub pascals_at_full_scale: Option<f64>,
 }
 
 impl AudioBus {
-    /// Sound pressure level of a sine with this peak in a body's own units, dB; none where nobody knows what full scale is.
+    /// Sound pressure level of a sine with this peak in a body's own units, dB; none where nobody
+    /// knows what full scale is.
     pub(crate) fn db_spl(&self, peak: f64) -> Option<f64> {
         let rms_pa = peak * self.gain * self.pascals_at_full_scale? * std::f64::consts::FRAC_1_SQRT_2;
         (rms_pa > 0.0).then(|| 20.0 * libm::log10(rms_pa / 20e-6))
@@ -41,7 +45,8 @@ impl Default for AudioBus {
     }
 }
 
-/// Peak level of each bus, as a meter shows it: up at once, down by 20 dB in half a second. One number a bus, linear, 1 = full scale.
+/// Peak level of each bus, as a meter shows it: up at once, down by 20 dB in half a second. One
+/// number a bus, linear, 1 = full scale.
 #[derive(Clone, Copy, PartialEq)]
 pub struct BusLevels {
     pub(crate) peaks: [f32; MAX_BUSES],

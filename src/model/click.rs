@@ -1,17 +1,19 @@
-//! Click: the short sound of a stiff body that a blow pushes as a whole (Qu & James 2019; `dsp::radiation`).
+//! Click: the short sound of a stiff body that a blow pushes as a whole (Qu & James 2019;
+//! `dsp::radiation`).
 //!
 //! ```text
 //! p(t) = p̂ cos(π t / τ), 0 ≤ t < τ        p̂ = click_pa(V, J / m, τ)
 //! ```
-//! J and τ are impulse and contact time of the blow, V and m volume and mass of the body. The sound follows the jerk, and the force is
-//! taken as half a sine.
+//! J and τ are impulse and contact time of the blow, V and m volume and mass of the body. The sound
+//! follows the jerk, and the force is taken as half a sine.
 
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::radiation::click_pa;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Below this a click is left out, in the unit of the modes: −94 dB of what is just heard in silence where that is the pascal.
+/// Below this a click is left out, in the unit of the modes: −94 dB of what is just heard in
+/// silence where that is the pascal.
 const SILENT: f64 = 4e-10;
 
 /// A body that clicks: the field `click` of a modes file.

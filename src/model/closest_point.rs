@@ -1,4 +1,5 @@
-//! Closest point of a triangulation to a place in space, for the game half: a tree of boxes, the nearer half first.
+//! Closest point of a triangulation to a place in space, for the game half: a tree of boxes, the
+//! nearer half first.
 
 use glam::DVec3;
 
@@ -106,8 +107,8 @@ impl Node {
     }
 }
 
-/// The nearest point of one triangle: inside it, on an edge, or a corner (Ericson, *Real-Time Collision Detection*, 5.1.5, by the signs of the
-/// projections).
+/// The nearest point of one triangle: inside it, on an edge, or a corner (Ericson, *Real-Time
+/// Collision Detection*, 5.1.5, by the signs of the projections).
 fn on_triangle(at: DVec3, &[a, b, c]: &[DVec3; 3], triangle: usize) -> OnTriangle {
     let found = |weights: [f64; 3]| {
         let place = a * weights[0] + b * weights[1] + c * weights[2];

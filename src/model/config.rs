@@ -16,10 +16,11 @@ use serde::{Deserialize, Serialize};
 /// Most inner samples for each that leaves, besides those of low rates.
 const MAX_OVERSAMPLING: usize = 16;
 
-/// Settings of an engine. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
-/// [`Config::live`] is the same for a game that runs now.
+/// Settings of an engine. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered
+/// offline; [`Config::live`] is the same for a game that runs now.
 ///
-/// As text it is a table with these fields, of which any may be missing, and no others ([`Config::parse`]).
+/// As text it is a table with these fields, of which any may be missing, and no others
+/// ([`Config::parse`]).
 ///
 /// ```
 /// use asperity::Config;
@@ -34,8 +35,9 @@ const MAX_OVERSAMPLING: usize = 16;
 pub struct Config {
     /// Rate of every output, Hz; 8–384 kHz, default 44.1 kHz.
     pub sample_rate_hz: f64,
-    /// Inner samples where there would be one: 1–16, default 1. What a sample is too coarse for (the contact between its samples,
-    /// the force as the body hears it) errs the less, and everything but the outputs costs so many times as much.
+    /// Inner samples where there would be one: 1–16, default 1. What a sample is too coarse for
+    /// (the contact between its samples, the force as the body hears it) errs the less, and
+    /// everything but the outputs costs so many times as much.
     pub oversampling: usize,
     /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
     pub seed: u64,
@@ -45,13 +47,16 @@ pub struct Config {
     pub path_cutoff_hz: f64,
     /// Integrator of the micro-contact model.
     pub integrator: Integrator,
-    /// The engine's own probe, for contacts that name no other: the fingertip unless told otherwise.
+    /// The engine's own probe, for contacts that name no other: the fingertip unless told
+    /// otherwise.
     pub probe: Probe,
     /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
-    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By default one with gain 1, without limiter.
+    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By
+    /// default one with gain 1, without limiter.
     pub audio: Vec<AudioBus>,
-    /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force times speed times importance.
+    /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force
+    /// times speed times importance.
     pub max_contacts: usize,
     /// Most probes, the engine's own not counted; 1–4096, default 64.
     pub max_probes: usize,
@@ -63,25 +68,31 @@ pub struct Config {
     pub max_bodies: usize,
     /// Events that may wait between the threads; 1–16,777,216, default 4096.
     pub queue_capacity: usize,
-    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600 s, default 0.25 s.
+    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600
+    /// s, default 0.25 s.
     pub contact_timeout_s: f64,
-    /// Conversion of game time to samples: exactly, as an offline render wants it, unless told otherwise. A game that
-    /// runs now begins with [`Config::live`].
+    /// Conversion of game time to samples: exactly, as an offline render wants it, unless told
+    /// otherwise. A game that runs now begins with [`Config::live`].
     pub clock: ClockMode,
-    /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
-    /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
+    /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps
+    /// all. The default costs −100 dB of error or less; [`Culling::default`] goes further, as far
+    /// as the ear does.
     #[serde(with = "culling_or_none")]
     pub culling: Option<Culling>,
     /// Lets the audio half leave out the least audible work while blocks run late, as told by
-    /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load, nothing is ever left out.
+    /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load,
+    /// nothing is ever left out.
     pub shed_load: bool,
-    /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact model: [`Isa::Portable`] gives the
-    /// same bits on every processor. `None`: the fastest that this processor has.
+    /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact
+    /// model: [`Isa::Portable`] gives the same bits on every processor. `None`: the fastest that
+    /// this processor has.
     pub kernel: Option<Isa>,
-    /// Most threads that render at once, the one that calls [`Renderer::render`](crate::Renderer::render) among them; 1–64, default 1: no
-    /// other is ever started. With more, surfaces with their contacts, and bodies, are dealt to threads that live as long as the renderer; the
-    /// bits are those of one thread. Pays from a few bodies of a thousand modes or a dozen contacts on surfaces of their own. The system
-    /// schedules them as any thread: on a machine that is busy with other things, leave them out.
+    /// Most threads that render at once, the one that calls
+    /// [`Renderer::render`](crate::Renderer::render) among them; 1–64, default 1: no other is ever
+    /// started. With more, surfaces with their contacts, and bodies, are dealt to threads that live
+    /// as long as the renderer; the bits are those of one thread. Pays from a few bodies of a
+    /// thousand modes or a dozen contacts on surfaces of their own. The system schedules them as
+    /// any thread: on a machine that is busy with other things, leave them out.
     pub threads: usize,
 }
 
@@ -114,15 +125,17 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Settings for a game that runs now: the device's rate, and a clock that follows the game through pauses, restarts,
-    /// slow motion and bursts of ticks ([`ClockMode::LIVE`]). The default's exact clock is for offline renders.
+    /// Settings for a game that runs now: the device's rate, and a clock that follows the game
+    /// through pauses, restarts, slow motion and bursts of ticks ([`ClockMode::LIVE`]). The
+    /// default's exact clock is for offline renders.
     #[must_use]
     pub fn live(sample_rate_hz: f64) -> Self {
         Self { sample_rate_hz, clock: ClockMode::LIVE, ..Self::default() }
     }
 
-    /// Rate at which the engine runs inside, Hz: [`Self::oversampling`] times the smallest multiple of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what
-    /// a stroke sounds and feels like does not depend on the rate of the outputs. Sources that keep time (sand, scales and
+    /// Rate at which the engine runs inside, Hz: [`Self::oversampling`] times the smallest multiple
+    /// of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what a stroke sounds and feels like
+    /// does not depend on the rate of the outputs. Sources that keep time (sand, scales and
     /// crossfades that change) are made for this rate.
     #[must_use]
     pub fn inner_rate_hz(&self) -> f64 {
@@ -134,14 +147,16 @@ impl Config {
         InnerRate::samples(self.sample_rate_hz) * self.oversampling.max(1)
     }
 
-    /// Contacts that can be rendered at the same time: as many again as half of [`Self::max_contacts`], at least 8, let those that were stolen or
-    /// have ended fade while new ones sound.
+    /// Contacts that can be rendered at the same time: as many again as half of
+    /// [`Self::max_contacts`], at least 8, let those that were stolen or have ended fade while new
+    /// ones sound.
     #[must_use]
     pub fn voices(&self) -> usize {
         self.max_contacts + self.max_contacts.div_ceil(2).max(8)
     }
 
-    /// Most that can wait to be freed by the game half: what can be alive, and what each message of a full queue sends home.
+    /// Most that can wait to be freed by the game half: what can be alive, and what each message of
+    /// a full queue sends home.
     pub(crate) fn most_to_free(&self) -> usize {
         2 * (self.max_surfaces + self.max_bodies) + self.max_ports + self.queue_capacity
     }

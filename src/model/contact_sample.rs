@@ -5,8 +5,9 @@
 //! press   normal_force_n, or depth_m: how deep the tip stands below the untouched surface; at_m tells it where neither is written
 //! ```
 //!
-//! A device's loop knows where its tip is and wants to know the force: it reports a depth. Only what gives way can answer; on a hard
-//! surface a depth says nothing about the force, and is refused.
+//! A device's loop knows where its tip is and wants to know the force: it reports a depth. Only
+//! what gives way can answer; on a hard surface a depth says nothing about the force, and is
+//! refused.
 
 use crate::model::bad_value::{BadValue, held, within};
 use crate::model::error::Refusal;
@@ -28,23 +29,29 @@ use asperity_dsp::limits;
 #[serde(try_from = "Written", into = "Written")]
 pub struct ContactSample {
     /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
-    /// wrap or run on beyond 0–1. [`at_m`](Self::at_m) counts instead on a surface with a frame; NaN if only that was told.
+    /// wrap or run on beyond 0–1. [`at_m`](Self::at_m) counts instead on a surface with a frame;
+    /// NaN if only that was told.
     pub uv: [f64; 2],
     /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
     pub velocity_m_s: Option<[f64; 2]>,
     /// Force pressing the finger onto the surface, N. Physics engines report small negative values
-    /// around lift-off; they count as 0. [`depth_m`](Self::depth_m) counts instead; NaN if the place tells the depth.
+    /// around lift-off; they count as 0. [`depth_m`](Self::depth_m) counts instead; NaN if the
+    /// place tells the depth.
     pub normal_force_n: f64,
-    /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin) only.
+    /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin)
+    /// only.
     pub closing_m_s: f64,
     /// Place in the frame of the body that the surface belongs to, m.
     pub at_m: Option<[f64; 3]>,
-    /// Depth of the tip below the untouched surface, m; below 0 it is above it. For surfaces that give way.
+    /// Depth of the tip below the untouched surface, m; below 0 it is above it. For surfaces that
+    /// give way.
     pub depth_m: Option<f64>,
-    /// Speed at which what touches slides on the ground where they touch, m/s: missing = as fast as it moves, a stroke; 0 = it rolls. Between
-    /// them it does a bit of both ([`asperity_dsp::rolling`]).
+    /// Speed at which what touches slides on the ground where they touch, m/s: missing = as fast as
+    /// it moves, a stroke; 0 = it rolls. Between them it does a bit of both
+    /// ([`asperity_dsp::rolling`]).
     pub slip_m_s: Option<f64>,
-    /// Radius of what rolls, m; missing = its probe's tip, and at least that of a fingertip, 8 mm. Without a slip it says nothing.
+    /// Radius of what rolls, m; missing = its probe's tip, and at least that of a fingertip, 8 mm.
+    /// Without a slip it says nothing.
     pub roll_radius_m: Option<f64>,
 }
 
@@ -130,7 +137,8 @@ pub(crate) struct Place {
 }
 
 impl ContactSample {
-    /// At texture coordinates `uv`, pressed with `normal_force_n`; its velocity is estimated from where it goes.
+    /// At texture coordinates `uv`, pressed with `normal_force_n`; its velocity is estimated from
+    /// where it goes.
     #[must_use]
     pub fn new(uv: [f64; 2], normal_force_n: f64) -> Self {
         Self { uv, normal_force_n, ..Self::default() }
@@ -142,7 +150,8 @@ impl ContactSample {
         Self { uv, depth_m: Some(depth_m), ..Self::default() }
     }
 
-    /// With its tip at a place of the body, m: the surface's frame tells where that is on the surface and how deep below it.
+    /// With its tip at a place of the body, m: the surface's frame tells where that is on the
+    /// surface and how deep below it.
     #[must_use]
     pub fn tip_at(at_m: [f64; 3]) -> Self {
         Self { uv: [f64::NAN; 2], normal_force_n: f64::NAN, at_m: Some(at_m), ..Self::default() }
@@ -174,7 +183,8 @@ impl ContactSample {
         self
     }
 
-    /// Sliding with this speed where it touches, m/s, whatever else of its motion is: a wheel that spins or locks.
+    /// Sliding with this speed where it touches, m/s, whatever else of its motion is: a wheel that
+    /// spins or locks.
     #[must_use]
     pub fn slipping(mut self, slip_m_s: f64) -> Self {
         self.slip_m_s = Some(slip_m_s);
@@ -188,8 +198,8 @@ impl ContactSample {
         self
     }
 
-    /// Sample with a negative force set to 0, and force and speeds that no model reaches held at their limits: 1e4 N and
-    /// 100 m/s, of a velocity in its own direction.
+    /// Sample with a negative force set to 0, and force and speeds that no model reaches held at
+    /// their limits: 1e4 N and 100 m/s, of a velocity in its own direction.
     ///
     /// # Errors
     /// When a number is not finite, or a place beyond the limits of this module.
@@ -229,8 +239,9 @@ impl ContactSample {
         Ok((self, at_limit))
     }
 
-    /// On its surface: a place in a frame becomes texture coordinates and, where nothing else presses, a depth. On a surface without a
-    /// frame the place stays what it is, and texture coordinates are needed beside it.
+    /// On its surface: a place in a frame becomes texture coordinates and, where nothing else
+    /// presses, a depth. On a surface without a frame the place stays what it is, and texture
+    /// coordinates are needed beside it.
     pub(crate) fn on(mut self, place: &Place) -> Result<Self, Refusal> {
         if let (Some(at_m), Some(frame)) = (self.at_m, place.frame) {
             for x in at_m {

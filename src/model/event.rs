@@ -1,17 +1,20 @@
-//! Contact events, as a game or VR physics step reports them: contacts that begin, move and end, and impacts.
+//! Contact events, as a game or VR physics step reports them: contacts that begin, move and end,
+//! and impacts.
 //!
 //! Events are small `Copy` values in SI units, stamped by the caller in game seconds. The same type
 //! serves a live game, a replayed [contact log](crate::files::contact_log) and every test.
 //!
-//! **Impact or slide?** What strikes and leaves, or strikes with a rigid body, is an [`Impact`]: one pulse
-//! into the body. What stays is a contact: its landing sounds through the contact model, by
-//! [`closing_m_s`](ContactSample::closing_m_s). Report one or the other for the same landing, not both.
+//! **Impact or slide?** What strikes and leaves, or strikes with a rigid body, is an [`Impact`]:
+//! one pulse into the body. What stays is a contact: its landing sounds through the contact model,
+//! by [`closing_m_s`](ContactSample::closing_m_s). Report one or the other for the same landing,
+//! not both.
 //!
-//! **Flicker.** Physics engines lose a contact for a frame and find it again. A begin that comes while
-//! the same contact still fades from its end (25 ms, longer than a frame at 60 Hz), on the same surface
-//! and actuator and within 10 mm of where it left, is the same touch: it goes on from the level it has
-//! faded to, without a landing, and is counted in [`Stats::debounced`](crate::Stats::debounced). A begin
-//! of a contact that never ended is a landing.
+//! **Flicker.** Physics engines lose a contact for a frame and find it again. A begin that comes
+//! while the same contact still fades from its end (25 ms, longer than a frame at 60 Hz), on the
+//! same surface and actuator and within 10 mm of where it left, is the same touch: it goes on from
+//! the level it has faded to, without a landing, and is counted in
+//! [`Stats::debounced`](crate::Stats::debounced). A begin of a contact that never ended is a
+//! landing.
 
 use crate::model::bad_value::{BadValue, held, within};
 pub use crate::model::contact_sample::ContactSample;
@@ -49,8 +52,8 @@ pub struct Touching {
     pub probe: Option<ProbeId>,
     /// Which haptic channel feels it; none = it is heard only.
     pub actuator: Option<Actuator>,
-    /// The body that holds the probe, a pen for instance: it rings too, at its position 0, from the same impulses with
-    /// opposite sign.
+    /// The body that holds the probe, a pen for instance: it rings too, at its position 0, from the
+    /// same impulses with opposite sign.
     pub holder: Option<BodyId>,
     /// Linear gain of what is felt and heard of it, 0–1000.
     pub gain: f64,
@@ -128,15 +131,17 @@ pub struct Impact {
     pub striker: Material,
     /// Ratio of rebound to approach speed, 0–1; 1 is the loss-free impact of Hertz theory.
     pub restitution: f64,
-    /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
-    /// does not have counts as its last.
+    /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the
+    /// body does not have counts as its last.
     pub position: usize,
-    /// Place that is hit, m in the body's frame: the nearest point of its surface counts, instead of `position`. Only a body whose modes have
-    /// [shapes](crate::ModeShapes) takes it.
+    /// Place that is hit, m in the body's frame: the nearest point of its surface counts, instead
+    /// of `position`. Only a body whose modes have [shapes](crate::ModeShapes) takes it.
     pub at_m: Option<[f64; 3]>,
-    /// Along what it is hit there, in the body's frame; none = the inward normal. Its length does not count.
+    /// Along what it is hit there, in the body's frame; none = the inward normal. Its length does
+    /// not count.
     pub direction: Option<[f64; 3]>,
-    /// The haptic channel that feels the blow; none = the first one if somebody holds the striker, else nobody feels it.
+    /// The haptic channel that feels the blow; none = the first one if somebody holds the striker,
+    /// else nobody feels it.
     pub actuator: Option<Actuator>,
     /// The body in the hand, which rings at its position 0 from the same pulse with opposite sign.
     pub holder: Option<BodyId>,
@@ -238,8 +243,8 @@ impl ContactEvent {
         Self::Moved { contact, sample, emphasis }
     }
 
-    /// Event in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
-    /// moves slowly. Forces and blows stay what they are.
+    /// Event in a second of audio during which `pace` seconds of the game go by: in slow motion a
+    /// contact moves slowly. Forces and blows stay what they are.
     pub(crate) fn at_pace(mut self, pace: f64) -> Self {
         if let Self::Begin { sample, .. } | Self::Moved { sample, .. } = &mut self {
             sample.velocity_m_s = sample.velocity_m_s.map(|v| v.map(|v| v * pace));
@@ -280,7 +285,8 @@ impl ContactEvent {
 }
 
 impl Impact {
-    /// A loss-free blow of a steel ball of 1 cm and 4 g at 1 m/s: a value to begin with, for the fields that a game does not know.
+    /// A loss-free blow of a steel ball of 1 cm and 4 g at 1 m/s: a value to begin with, for the
+    /// fields that a game does not know.
     #[must_use]
     pub fn on(body: BodyId) -> Self {
         Self {
@@ -301,8 +307,9 @@ impl Impact {
         }
     }
 
-    /// From what most physics engines tell of a collision: the impulse along the normal, N·s, and the approach speed. The mass follows from
-    /// J = m v (1 + e), so that the body receives the impulse that was reported.
+    /// From what most physics engines tell of a collision: the impulse along the normal, N·s, and
+    /// the approach speed. The mass follows from J = m v (1 + e), so that the body receives the
+    /// impulse that was reported.
     #[must_use]
     pub fn from_impulse(body: BodyId, impulse_n_s: f64, speed_m_s: f64, restitution: f64) -> Self {
         let mass_kg = impulse_n_s / (speed_m_s.max(1e-6) * (1.0 + restitution));
@@ -344,7 +351,8 @@ impl Impact {
         self
     }
 
-    /// Impact with speed, mass and radius beyond what the models reach held at their limits: 100 m/s, 1e4 kg, 10 m.
+    /// Impact with speed, mass and radius beyond what the models reach held at their limits: 100
+    /// m/s, 1e4 kg, 10 m.
     ///
     /// # Errors
     /// When a number is not finite or no striker can have it.

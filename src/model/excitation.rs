@@ -6,11 +6,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Exciter {
-    /// Hertz pulses at the micro-collisions, as the paper does: silent where the pad never lifts off.
+    /// Hertz pulses at the micro-collisions, as the paper does: silent where the pad never lifts
+    /// off.
     Collisions,
     /// The alternating part of the contact force.
     Force,
-    /// Friction along the motion, which sticks and slips with the body in every sample: bowed and squealing things.
+    /// Friction along the motion, which sticks and slips with the body in every sample: bowed and
+    /// squealing things.
     Friction,
 }
 

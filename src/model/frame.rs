@@ -4,15 +4,17 @@
 //! P = origin + u · width · û + v · height · v̂            u = (P − origin) · û / width,  v = (P − origin) · v̂ / height
 //! ```
 //!
-//! The one mapping between texture coordinates and the body's space, metres in the body's own frame: solids are cut from one block by it,
-//! and places on a body are told as texture coordinates of its surfaces and back. Vectors are any library's, through [`mint`].
+//! The one mapping between texture coordinates and the body's space, metres in the body's own
+//! frame: solids are cut from one block by it, and places on a body are told as texture coordinates
+//! of its surfaces and back. Vectors are any library's, through [`mint`].
 
 use crate::model::bad_value::{BadValue, within};
 use asperity_dsp::limits;
 use glam::DVec3;
 use mint::Vector3;
 
-/// Largest deviation of the axes from a right angle, as the cosine between them: what single precision leaves of one.
+/// Largest deviation of the axes from a right angle, as the cosine between them: what single
+/// precision leaves of one.
 const SQUARE: f64 = 1e-4;
 
 /// A plane in a body: an origin and two axes at a right angle.
@@ -23,10 +25,12 @@ pub struct SurfaceFrame {
 }
 
 impl SurfaceFrame {
-    /// A surface whose uv (0, 0) lies at `origin_m` of its body and whose u and v grow along the axes, which need not be of length 1.
+    /// A surface whose uv (0, 0) lies at `origin_m` of its body and whose u and v grow along the
+    /// axes, which need not be of length 1.
     ///
     /// # Errors
-    /// When a number is not finite, the origin lies beyond 1 km, an axis has no length, or the axes do not stand at a right angle.
+    /// When a number is not finite, the origin lies beyond 1 km, an axis has no length, or the axes
+    /// do not stand at a right angle.
     pub fn new<T: Into<f64>>(
         origin_m: impl Into<Vector3<T>>,
         u_axis: impl Into<Vector3<T>>,
@@ -62,7 +66,8 @@ impl SurfaceFrame {
         [0, 1].map(|axis| from_origin.dot(self.axes[axis]) / size_m[axis])
     }
 
-    /// Depth of a point of the body below the plane, m, against the direction u × v, which points out of the body.
+    /// Depth of a point of the body below the plane, m, against the direction u × v, which points
+    /// out of the body.
     #[must_use]
     pub fn depth_m<T: Into<f64>>(&self, point_m: impl Into<Vector3<T>>) -> f64 {
         let [u, v] = self.axes;

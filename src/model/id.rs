@@ -1,7 +1,7 @@
 //! Names of what a scene holds: a place, and which of its occupants is meant.
 
-/// A place in a scene's table and the number of the occupant, from 1 on, so that a name outlives what it named without ever
-/// naming what comes after it.
+/// A place in a scene's table and the number of the occupant, from 1 on, so that a name outlives
+/// what it named without ever naming what comes after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Place {
     pub(crate) index: u32,
@@ -22,8 +22,9 @@ macro_rules! ids {
     ($($(#[doc = $doc:literal])+ $name:ident),+ $(,)?) => {$(
         $(#[doc = $doc])+
         ///
-        /// 64 bits: the place in the lower half, and in the upper one which of its occupants. Once that one is gone, every call that is
-        /// given its id refuses it, however often the place is used again.
+        /// 64 bits: the place in the lower half, and in the upper one which of its occupants. Once
+        /// that one is gone, every call that is given its id refuses it, however often the place is
+        /// used again.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub struct $name(pub(crate) Place);
 
@@ -44,7 +45,8 @@ macro_rules! ids {
                 self.0.to_bits()
             }
 
-            /// The id that [`to_bits`](Self::to_bits) gave. A number that is none is an id that every call refuses.
+            /// The id that [`to_bits`](Self::to_bits) gave. A number that is none is an id that
+            /// every call refuses.
             #[must_use]
             pub fn from_bits(bits: u64) -> Self {
                 Self(Place::from_bits(bits))

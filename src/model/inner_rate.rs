@@ -1,12 +1,15 @@
 //! The rate inside: never below 44.1 kHz.
 //!
-//! A pad that leaves a rough surface and meets it again does so hundreds of times a second and within a tenth of a millisecond: what is
-//! computed at 22.05 kHz finds other collisions than at 44.1, and half of the micro-relief is beyond its reach. So at lower rates the
-//! whole engine runs at the smallest multiple from 44.1 kHz on, and one of so many inner samples leaves. Nothing has to be filtered out
-//! before: bodies have no modes above half of the rate outside, and a sampled displacement is what it was; of an acceleration the mean of
-//! the inner samples leaves, which is the change of velocity over the outer one. [`Config::oversampling`](crate::Config::oversampling)
-//! multiplies what is so found, for renders that are to be more exact than the outputs' rate allows. No latency is added: the look-ahead of the contact
-//! model is one inner sample, and another inner sample is at hand where there are several.
+//! A pad that leaves a rough surface and meets it again does so hundreds of times a second and
+//! within a tenth of a millisecond: what is computed at 22.05 kHz finds other collisions than at
+//! 44.1, and half of the micro-relief is beyond its reach. So at lower rates the whole engine runs
+//! at the smallest multiple from 44.1 kHz on, and one of so many inner samples leaves. Nothing has
+//! to be filtered out before: bodies have no modes above half of the rate outside, and a sampled
+//! displacement is what it was; of an acceleration the mean of the inner samples leaves, which is
+//! the change of velocity over the outer one. [`Config::oversampling`](crate::Config::oversampling)
+//! multiplies what is so found, for renders that are to be more exact than the outputs' rate
+//! allows. No latency is added: the look-ahead of the contact model is one inner sample, and
+//! another inner sample is at hand where there are several.
 
 /// Lowest rate inside, Hz.
 pub(crate) const LOWEST_INNER_HZ: f64 = 44_100.0;
@@ -27,7 +30,8 @@ impl InnerRate {
         ((LOWEST_INNER_HZ / sample_rate_hz - 1e-9).ceil() as usize).max(1)
     }
 
-    /// `every` inner samples for each that leaves, which lag by `latency_samples`: a whole number of outer samples is left of that.
+    /// `every` inner samples for each that leaves, which lag by `latency_samples`: a whole number
+    /// of outer samples is left of that.
     pub(crate) fn new(every: usize, latency_samples: usize) -> Self {
         Self { every, at: latency_samples % every }
     }
@@ -42,8 +46,8 @@ impl InnerRate {
         sample % self.every as u64 == self.at as u64
     }
 
-    /// Copies what leaves of the inner samples from `position` on to the beginning of `out`; tells the index of the first among all
-    /// that leave, and how many there are.
+    /// Copies what leaves of the inner samples from `position` on to the beginning of `out`; tells
+    /// the index of the first among all that leave, and how many there are.
     #[cold]
     #[inline(never)]
     pub(crate) fn leaving(&self, position: u64, inner: &[f32], out: &mut [f32]) -> (u64, usize) {

@@ -6,8 +6,9 @@
 //! ringing  α, η, β       d(ω) = (α + η ω + β ω²) / 2
 //! touch    μ, R, relief  friction and micro-relief of its ordinary finish
 //! ```
-//! The presets are room-temperature values of ordinary pieces, each number with its source in [`Material::PRESETS`]; real pieces differ by tens
-//! of per cent in stiffness and by a factor of two in damping.
+//! The presets are room-temperature values of ordinary pieces, each number with its source in
+//! [`Material::PRESETS`]; real pieces differ by tens of per cent in stiffness and by a factor of
+//! two in damping.
 
 mod presets;
 
@@ -108,8 +109,9 @@ mod default {
 }
 
 impl Material {
-    /// A material by its elastic constants: Young's modulus (Pa), Poisson ratio, density (kg/m³). Damping, friction and finish are those of
-    /// [`PLA`](Self::PLA), the default material of bodies.
+    /// A material by its elastic constants: Young's modulus (Pa), Poisson ratio, density (kg/m³).
+    /// Damping, friction and finish are those of [`PLA`](Self::PLA), the default material of
+    /// bodies.
     #[must_use]
     pub const fn new(young_pa: f64, poisson: f64, density_kg_m3: f64) -> Self {
         Self { young_pa, poisson, density_kg_m3, ..Self::PLA }

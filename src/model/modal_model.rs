@@ -1,8 +1,8 @@
 //! The modes of a body.
 //!
-//! y(t) = Σ amplitude · e^(−decay_per_s · t) · sin(2π · frequency_hz · t + phase_rad) is the response
-//! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
-//! y · J / `impulse_n_s` (Hasti §III-D).
+//! y(t) = Σ amplitude · e^(−decay_per_s · t) · sin(2π · frequency_hz · t + phase_rad) is the
+//! response to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as y
+//! · J / `impulse_n_s` (Hasti §III-D).
 
 use crate::model::click::Click;
 use crate::model::material::Material;
@@ -36,7 +36,8 @@ pub struct ModalModel {
     /// The modes, in any order.
     pub modes: Vec<Mode>,
     /// Amplitudes when the body is struck elsewhere: strike position 1, 2, … (at most
-    /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes` itself.
+    /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes`
+    /// itself.
     pub positions: Vec<Vec<f64>>,
     /// Part of the strike besides modes, played at every impact.
     pub residual: Option<Residual>,
@@ -129,8 +130,9 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// Body `size` times as large, of `material`: every mode lower by `size`, and its decay as much longer or shorter as the
-    /// material's damping says of its new frequency. Amplitudes stay; a residual is of the size it was recorded at, and is left out.
+    /// Body `size` times as large, of `material`: every mode lower by `size`, and its decay as much
+    /// longer or shorter as the material's damping says of its new frequency. Amplitudes stay; a
+    /// residual is of the size it was recorded at, and is left out.
     ///
     /// ```
     /// use asperity::{Material, Stock};
@@ -181,7 +183,8 @@ impl ModalModel {
     /// Model with what a strike has besides its modes; `gain` scales it, 0 leaves it out.
     ///
     /// # Errors
-    /// When the burst is longer than [`LONGEST_S`](crate::model::residual::LONGEST_S) or holds no finite numbers.
+    /// When the burst is longer than [`LONGEST_S`](crate::model::residual::LONGEST_S) or holds no
+    /// finite numbers.
     pub fn with_residual(mut self, residual: Option<Residual>, gain: f64) -> Result<Self, ModalModelError> {
         self.residual = residual.filter(|_| gain != 0.0).map(|mut residual| {
             residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
@@ -269,8 +272,8 @@ impl ModalModel {
         self.impulse_n_s * shapes.gains[mode] * most
     }
 
-    /// The modes for an impulse of 1 N·s, each at the position where it answers most, and its share of
-    /// that (−1 to 1) at every position.
+    /// The modes for an impulse of 1 N·s, each at the position where it answers most, and its share
+    /// of that (−1 to 1) at every position.
     pub(crate) fn unit_modes(&self) -> impl Iterator<Item = (Mode, [f32; MAX_POSITIONS])> + '_ {
         (0..self.modes.len()).map(|i| {
             let mode = self.modes[i];

@@ -1,8 +1,9 @@
-//! Mode shapes: how a body's surface moves in each mode, so that a strike at any place knows what it excites.
+//! Mode shapes: how a body's surface moves in each mode, so that a strike at any place knows what
+//! it excites.
 //!
-//! A strike of impulse J at a point p of the surface, along n̂, sounds as
-//! y(t) = J Σ `gains[m]` · (φ_m(p)·n̂) · e^(−d_m t) · sin(2π f_m t + phase_m), with φ between points of the triangulation by
-//! barycentric coordinates. φ is mass-normalised (Φᵀ M Φ = 1, kg^−½).
+//! A strike of impulse J at a point p of the surface, along n̂, sounds as y(t) = J Σ `gains[m]` ·
+//! (φ_m(p)·n̂) · e^(−d_m t) · sin(2π f_m t + phase_m), with φ between points of the triangulation
+//! by barycentric coordinates. φ is mass-normalised (Φᵀ M Φ = 1, kg^−½).
 
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +30,8 @@ pub struct ModeShapes {
     pub points_m: Vec<[f64; 3]>,
     /// Three points each, anticlockwise from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// For each mode what its velocity at the struck place becomes in the sound, in the file's unit.
+    /// For each mode what its velocity at the struck place becomes in the sound, in the file's
+    /// unit.
     pub gains: Vec<f64>,
     /// For each mode the motion of every point, kg^−½.
     pub phi_per_sqrt_kg: Vec<Vec<[f32; 3]>>,
@@ -38,7 +40,8 @@ pub struct ModeShapes {
 }
 
 impl ModeShapes {
-    /// Body `size` times as large: mass-normalised motion falls as its mass grows, and what it sounds like stays.
+    /// Body `size` times as large: mass-normalised motion falls as its mass grows, and what it
+    /// sounds like stays.
     pub(crate) fn scale(&mut self, size: f64) {
         let heavier = libm::pow(size, 1.5);
         self.points_m.iter_mut().flatten().for_each(|x| *x *= size);

@@ -2,7 +2,8 @@
 
 use asperity_dsp::micro_contact::Probe;
 
-/// Names of the probes that a scene file may ask for, with what each is and where its numbers come from.
+/// Names of the probes that a scene file may ask for, with what each is and where its numbers come
+/// from.
 ///
 /// | probe | what moves with the surface | source |
 /// |---|---|---|

@@ -1,4 +1,5 @@
-//! Radiating body: how loud each mode is in the air, as one gain a mode when it is loaded (`dsp::radiation`).
+//! Radiating body: how loud each mode is in the air, as one gain a mode when it is loaded
+//! (`dsp::radiation`).
 //!
 //! ```text
 //! gain_m ← p̂_m at 1 m for a velocity of 1 m/s·kg^½        d_m ← d_m + d_rad        ω_m² + d_m² stays
@@ -14,8 +15,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 impl ModalModel {
-    /// Body in pascals at 1 m: each mode as loud as its [shape](crate::ModeShapes) radiates, its decay with what radiation takes, and with the
-    /// click of a body of this material that a blow pushes as a whole. One in pascals already stays what it is.
+    /// Body in pascals at 1 m: each mode as loud as its [shape](crate::ModeShapes) radiates, its
+    /// decay with what radiation takes, and with the click of a body of this material that a blow
+    /// pushes as a whole. One in pascals already stays what it is.
     ///
     /// A mode that radiation damps so much that it no longer swings becomes silent.
     ///

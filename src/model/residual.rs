@@ -1,14 +1,15 @@
 //! Residual burst of a recorded strike: the striker's click, the first rush of a thousand modes.
 //!
 //! A body may carry a *residual*, a short burst of samples that belongs to a strike of the model's
-//! `impulse_n_s` as its modes do. Every impact plays it once from the sample in which the contact begins,
+//! `impulse_n_s` as its modes do. Every impact plays it once from the sample in which the contact
+//! begins,
 //!
 //! ```text
 //! audio[n] += J / impulse_n_s · burst[n − n₀]
 //! ```
 //! linear as the modes are. Strokes do not: they send an impulse a sample, and the residual is what
-//! *one* strike leaves. The burst is brought to the engine's rate when the body is added, on the game
-//! thread; on the audio thread it is read and added: no heap, the same bits for any blocks.
+//! *one* strike leaves. The burst is brought to the engine's rate when the body is added, on the
+//! game thread; on the audio thread it is read and added: no heap, the same bits for any blocks.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! A point on the audio's time line.
 
-/// A point on the audio's time line, in whole 1/256 of a sample: fine enough that a path ripples by less
-/// than 10⁻⁵, and exact in a log, so that a recording replays to the bit.
+/// A point on the audio's time line, in whole 1/256 of a sample: fine enough that a path ripples by
+/// less than 10⁻⁵, and exact in a log, so that a recording replays to the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(crate) struct Stamp(u64);
 

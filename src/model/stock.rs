@@ -1,4 +1,5 @@
-//! Stock bodies: the modes of simple free shapes by size and material, so that a scene sounds before anything is recorded.
+//! Stock bodies: the modes of simple free shapes by size and material, so that a scene sounds
+//! before anything is recorded.
 //!
 //! ```text
 //! y(t) = J/m · Σ φₙ(x) Gₙ e^(−dₙ t) sin ωₙ t          pressure at 1 m, Pa, after an impulse J at x
@@ -6,8 +7,9 @@
 //! φₙ(x)  mode shape with a mean square of 1;            m the mass
 //! Gₙ     ρ₀ c √(A/4π) · (ka)² / √(4 + (ka)⁴)            radiation of a swinging sphere of the same surface A = 4π a²
 //! ```
-//! Frequencies are those of thin or slender bodies that nobody holds; what a support does is in α. The radiation is an estimate: it has the
-//! level right within some 10 dB, and makes the lowest modes of small things as weak as they are.
+//! Frequencies are those of thin or slender bodies that nobody holds; what a support does is in α.
+//! The radiation is an estimate: it has the level right within some 10 dB, and makes the lowest
+//! modes of small things as weak as they are.
 //!
 //! | shape | proportions | modes from |
 //! |---|---|---|
@@ -20,7 +22,8 @@
 //! | block | 4 : 2 : 1 | Rayleigh–Ritz in three dimensions (Visscher et al. 1991) |
 //! | box, door; can, bottle, pan, barrel | [`solved`] | tetrahedra; thin shells of revolution |
 //!
-//! Measured against `tests/independent/stock_modes.py`: bar within 0.9 % of the exact Timoshenko bar (10 modes).
+//! Measured against `tests/independent/stock_modes.py`: bar within 0.9 % of the exact Timoshenko
+//! bar (10 modes).
 
 mod solved;
 mod tables;
@@ -54,7 +57,8 @@ const ALONG: [f64; 3] = [0.06, 0.5, 0.3];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stock {
-    /// A flat bar, as of a glockenspiel: struck near an end (position 0), in the middle (1), between (2).
+    /// A flat bar, as of a glockenspiel: struck near an end (position 0), in the middle (1),
+    /// between (2).
     Bar,
     /// A tube, as of a chime: struck near an end (0), in the middle (1), between (2).
     Tube,
@@ -66,17 +70,21 @@ pub enum Stock {
     Disc,
     /// A hemispherical bowl, struck at its rim.
     Bowl,
-    /// A block 4 : 2 : 1, struck on its largest face: near a corner (0), in the middle (1), between (2).
+    /// A block 4 : 2 : 1, struck on its largest face: near a corner (0), in the middle (1), between
+    /// (2).
     Block,
-    /// A hollow box 4 : 3 : 2, as a crate, struck on its largest face: beside the middle (0), in it (1), towards a corner (2).
+    /// A hollow box 4 : 3 : 2, as a crate, struck on its largest face: beside the middle (0), in it
+    /// (1), towards a corner (2).
     Box,
     /// A can or a mug, open above: struck at its rim (0), on the wall (1), on the bottom (2).
     Can,
     /// An empty bottle: struck on its side (0), at its mouth (1), on the bottom (2).
     Bottle,
-    /// A pan without its handle: struck at its rim (0), in the middle of the bottom (1), beside it (2).
+    /// A pan without its handle: struck at its rim (0), in the middle of the bottom (1), beside it
+    /// (2).
     Pan,
-    /// A barrel with both heads: struck on the bulge (0), on a head (1), near an end of the wall (2).
+    /// A barrel with both heads: struck on the bulge (0), on a head (1), near an end of the wall
+    /// (2).
     Barrel,
     /// A door leaf that hangs free: struck near a corner (0), in the middle (1), between (2).
     Door,
@@ -151,8 +159,9 @@ impl Stock {
         }
     }
 
-    /// The modes of this shape in a material, `size_m` (1 mm–100 m) along its longest side or across its diameter: the answer in pascals at 1 m to an
-    /// impulse of 1 N·s, from 16 Hz to 20 kHz. A thing so small that it rings above that has no mode and is silent.
+    /// The modes of this shape in a material, `size_m` (1 mm–100 m) along its longest side or
+    /// across its diameter: the answer in pascals at 1 m to an impulse of 1 N·s, from 16 Hz to 20
+    /// kHz. A thing so small that it rings above that has no mode and is silent.
     ///
     /// # Errors
     /// When the size or a number of the material is outside its range.
@@ -237,8 +246,8 @@ fn plate_stiffness_n_m(material: &Material, thickness_m: f64) -> f64 {
     material.young_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poisson * material.poisson))
 }
 
-/// Modes of a free slender body of length L whose sections have the radius of gyration r: ω = (β L)² r c / L², less what shear
-/// and rotary inertia take.
+/// Modes of a free slender body of length L whose sections have the radius of gyration r: ω = (β
+/// L)² r c / L², less what shear and rotary inertia take.
 fn slender(material: &Material, length_m: f64, gyration_m: f64, shear: f64) -> Vec<(f64, Vec<f64>)> {
     (1..=MOST_MODES)
         .map(|n| {

@@ -3,8 +3,9 @@
 //! ```text
 //! amplitude of mode m for 1 N·s = g_m · (φ_m(p) · n̂)          φ_m(p) = Σ_i w_i φ_m(corner i)
 //! ```
-//! p is the point of the triangulation nearest to where the strike was reported, w its barycentric coordinates, n̂ the direction of the
-//! strike, or the inward normal. Finding p is work for the game half; what crosses to the audio half is a [`StrikePlace`] of six numbers.
+//! p is the point of the triangulation nearest to where the strike was reported, w its barycentric
+//! coordinates, n̂ the direction of the strike, or the inward normal. Finding p is work for the
+//! game half; what crosses to the audio half is a [`StrikePlace`] of six numbers.
 
 use crate::model::closest_point::TriangleTree;
 use crate::model::mode_shapes::ModeShapes;
@@ -77,8 +78,9 @@ impl StrikeField {
         &self.shapes
     }
 
-    /// The place of the body nearest to `at_m` (its frame, m), struck along `direction`, whose length does not count; without one, or along one of no length,
-    /// along the inward normal. None for a body without triangles, or where a number is not finite.
+    /// The place of the body nearest to `at_m` (its frame, m), struck along `direction`, whose
+    /// length does not count; without one, or along one of no length, along the inward normal. None
+    /// for a body without triangles, or where a number is not finite.
     #[must_use]
     pub fn place(&self, at_m: [f64; 3], direction: Option<[f64; 3]>) -> Option<StrikePlace> {
         if !at_m.iter().chain(direction.iter().flatten()).all(|x| x.is_finite()) {

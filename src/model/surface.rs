@@ -37,21 +37,24 @@ pub enum Roughness {
 
 /// R of a surface that has no roughness map: the middle of the scale.
 pub const DEFAULT_ROUGHNESS: f64 = 0.5;
-/// Rms height of the micro-noise in the octave around 1 mm wavelength where R is 1, m. **Measured here**: at R = 0.5 that is 9 µm,
-/// and from 8 µm on the micro-collisions of a fingertip carry the sound of rough strokes; a tool of 30 g is then shaken by 1–2 m/s² at
-/// 120 mm/s and R = 0.5, as published recordings of real materials are (`docs/feel.md`).
+/// Rms height of the micro-noise in the octave around 1 mm wavelength where R is 1, m. **Measured
+/// here**: at R = 0.5 that is 9 µm, and from 8 µm on the micro-collisions of a fingertip carry the
+/// sound of rough strokes; a tool of 30 g is then shaken by 1–2 m/s² at 120 mm/s and R = 0.5, as
+/// published recordings of real materials are (`docs/feel.md`).
 pub const DEFAULT_MICRO_RELIEF_M: f64 = 22e-6;
-/// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface has. **Chosen** within the millimetres to
-/// centimetres of machined and polished ones.
+/// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface
+/// has. **Chosen** within the millimetres to centimetres of machined and polished ones.
 pub const DEFAULT_OUTER_SCALE_M: f64 = 0.01;
-/// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would give
-/// contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass instead.
+/// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would
+/// give contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass
+/// instead.
 pub const EXCITER_RADIUS_M: f64 = 1e-3;
 /// Material of that bead.
 pub const EXCITER_MATERIAL: Material = Material::NAIL;
 
-/// Friction of a surface that rubs its body and says nothing else: rosin on a bow's hair, to the order of what is published of it (static 0.8,
-/// falling to 0.3 within some centimetres a second). **Assumed.**
+/// Friction of a surface that rubs its body and says nothing else: rosin on a bow's hair, to the
+/// order of what is published of it (static 0.8, falling to 0.3 within some centimetres a second).
+/// **Assumed.**
 pub const DEFAULT_STICK_SLIP: Friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.05 };
 
 /// A surface, ready to be added to a scene.
@@ -135,7 +138,8 @@ impl Surface {
         })
     }
 
-    /// A surface from a displacement map and a roughness map (grey PNG or JPEG, any size), repeated.
+    /// A surface from a displacement map and a roughness map (grey PNG or JPEG, any size),
+    /// repeated.
     ///
     /// # Errors
     /// When a map cannot be read or the extent is impossible; the message names the file.
@@ -151,7 +155,8 @@ impl Surface {
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 
-    /// A surface from a displacement map alone, repeated; its roughness is the middle of the scale unless told otherwise.
+    /// A surface from a displacement map alone, repeated; its roughness is the middle of the scale
+    /// unless told otherwise.
     ///
     /// # Errors
     /// As [`from_maps`](Self::from_maps).
@@ -162,7 +167,8 @@ impl Surface {
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 
-    /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish ([`of`](Self::of)).
+    /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish
+    /// ([`of`](Self::of)).
     ///
     /// ```
     /// use asperity::{Material, Surface};
@@ -187,8 +193,9 @@ impl Surface {
         Ok(Self::new(map, extent.width_m, extent.height_m)?.wraps(wraps))
     }
 
-    /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its friction. What is said after this counts
-    /// instead: `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
+    /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its
+    /// friction. What is said after this counts instead:
+    /// `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
     #[must_use]
     pub fn of(mut self, material: Material) -> Self {
         self.roughness = Roughness::Constant(material.roughness);
@@ -204,8 +211,8 @@ impl Surface {
         self
     }
 
-    /// Which of the body's strike positions contacts on this surface excite; 0 unless told otherwise. A
-    /// position the body does not have counts as its last.
+    /// Which of the body's strike positions contacts on this surface excite; 0 unless told
+    /// otherwise. A position the body does not have counts as its last.
     #[must_use]
     pub fn at_strike_position(mut self, position: usize) -> Self {
         self.strike_position = position;
@@ -226,8 +233,8 @@ impl Surface {
         self
     }
 
-    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength where R is 1, m; 0 = none. Elsewhere it is
-    /// 10^(0.75 (R − 1)) times that.
+    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength where R is 1, m; 0 =
+    /// none. Elsewhere it is 10^(0.75 (R − 1)) times that.
     #[must_use]
     pub fn micro_relief_m(mut self, rms_m: f64) -> Self {
         self.micro_relief_m = rms_m;
@@ -248,7 +255,8 @@ impl Surface {
         self
     }
 
-    /// Sets how far it gives way under each newton, m/N, whatever its source says; 0 leaves that to the source. A cloth on foam: 1e-3.
+    /// Sets how far it gives way under each newton, m/N, whatever its source says; 0 leaves that to
+    /// the source. A cloth on foam: 1e-3.
     ///
     /// ```text
     /// d = C F        a tip that stands d below the untouched surface is carried with d / C
@@ -291,11 +299,11 @@ impl Surface {
         self
     }
 
-    /// Contacts rub its body, which sticks and slips under them: a bow, a wet finger on glass, chalk. Beside whatever else
-    /// [excites](Self::excitation) it; one contact of a body at a time.
+    /// Contacts rub its body, which sticks and slips under them: a bow, a wet finger on glass,
+    /// chalk. Beside whatever else [excites](Self::excitation) it; one contact of a body at a time.
     ///
-    /// The body's motion under the contact has to be known: it has [shapes](crate::ModeShapes) and the surface a [frame](Self::frame), or it has a
-    /// [mass](crate::Body::mass_kg).
+    /// The body's motion under the contact has to be known: it has [shapes](crate::ModeShapes) and
+    /// the surface a [frame](Self::frame), or it has a [mass](crate::Body::mass_kg).
     ///
     /// ```
     /// use asperity::{Body, Config, Engine, Friction, Material, Stock, Surface};
@@ -318,10 +326,11 @@ impl Surface {
         self.stick_slip.filter(|_| self.excitation.has(Exciter::Friction))
     }
 
-    /// Sets whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
-    /// a whole tile is no movement, and the same coordinates are the same place, lap after lap; a source that never
-    /// repeats is cut into tiles without a seam. A source with an edge (a clamped map, sand) never wraps, a mirrored
-    /// one at every second tile. A surface that does not wrap takes uv as they are.
+    /// Sets whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a
+    /// jump by a whole tile is no movement, and the same coordinates are the same place, lap after
+    /// lap; a source that never repeats is cut into tiles without a seam. A source with an edge (a
+    /// clamped map, sand) never wraps, a mirrored one at every second tile. A surface that does not
+    /// wrap takes uv as they are.
     #[must_use]
     pub fn wraps(mut self, wraps: bool) -> Self {
         self.wraps = wraps;

@@ -1,4 +1,5 @@
-//! Texture coordinates of what has none of its own: by the place on the body and the direction in which its surface faces there.
+//! Texture coordinates of what has none of its own: by the place on the body and the direction in
+//! which its surface faces there.
 //!
 //! ```text
 //! plane       one plane; where the surface stands across it (more than 60°), as by the normal
@@ -6,7 +7,8 @@
 //! sphere      u = R φ / span_u,  v = R θ / span_v        φ: angle about y,  θ: from the pole
 //! cylinder    u = R φ / span_u,  v = −y / span_v; its ends as by the normal
 //! ```
-//! All in the body's own space, y along the axis. `span_m` is what uv 1 spans: the surface's width and height.
+//! All in the body's own space, y along the axis. `span_m` is what uv 1 spans: the surface's width
+//! and height.
 
 use crate::model::uv_triangle::UvTriangle;
 use glam::DVec3;
@@ -29,7 +31,8 @@ pub enum UvMapping {
     Sphere {
         /// Its radius, m.
         radius_m: f64,
-        /// Metres that uv 1 spans; without a seam where they go a whole number of times into the circumference.
+        /// Metres that uv 1 spans; without a seam where they go a whole number of times into the
+        /// circumference.
         span_m: [f64; 2],
     },
     /// A cylinder, or a capsule, about the y axis.
@@ -46,7 +49,8 @@ pub enum UvMapping {
 pub enum UvPlace {
     /// A triangle, exact or tangent to what is round.
     Triangle(UvTriangle),
-    /// By the normal: a [`TriplanarPath`](crate::texture::triplanar::TriplanarPath) of this span keeps its plane from report to report.
+    /// By the normal: a [`TriplanarPath`](crate::texture::triplanar::TriplanarPath) of this span
+    /// keeps its plane from report to report.
     ByNormal {
         /// Metres that uv 1 spans.
         span_m: [f64; 2],
@@ -54,8 +58,8 @@ pub enum UvPlace {
 }
 
 impl UvMapping {
-    /// Texture coordinates about a place whose surface faces along `outward`, both in the body's own space; none where a span or a
-    /// radius is no length.
+    /// Texture coordinates about a place whose surface faces along `outward`, both in the body's
+    /// own space; none where a span or a radius is no length.
     #[must_use]
     pub fn at(&self, place_m: [f64; 3], outward: [f64; 3]) -> Option<UvPlace> {
         let (place, outward) = (DVec3::from_array(place_m), DVec3::from_array(outward).normalize_or_zero());
@@ -84,7 +88,8 @@ fn by_normal(span_m: [f64; 2]) -> Option<UvPlace> {
     span_m.iter().all(|span| *span > 0.0 && span.is_finite()).then_some(UvPlace::ByNormal { span_m })
 }
 
-/// The triangle that touches a round body at a place: u about its axis, stretched by `widened`, v along what `down` makes of that.
+/// The triangle that touches a round body at a place: u about its axis, stretched by `widened`, v
+/// along what `down` makes of that.
 fn tangent(
     place: DVec3,
     (radius_m, span_m): (f64, [f64; 2]),

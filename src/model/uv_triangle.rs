@@ -1,26 +1,27 @@
 //! Texture coordinates of a contact in space: a triangle of a mesh with texture
 //! coordinates.
 //!
-//! Physics engines tell a point and a velocity in space; [`ContactSample`] wants texture coordinates and a
-//! velocity along the surface's u and v axes. Within a triangle both are linear:
+//! Physics engines tell a point and a velocity in space; [`ContactSample`] wants texture
+//! coordinates and a velocity along the surface's u and v axes. Within a triangle both are linear:
 //!
 //! ```text
 //! uv(P) = uv₀ + w₁ (uv₁ − uv₀) + w₂ (uv₂ − uv₀)      w: barycentric coordinates of P's projection
 //! v_u = v · û,  v_v = v · v̂                          û ∥ ∂P/∂u,  v̂ ∥ ∂P/∂v
 //! ```
 //!
-//! Vectors of any mathematics library come in through [`mint`]: glam's, nalgebra's, cgmath's, and plain
-//! arrays, in `f32` or `f64`. Inside they are glam's, in `f64`.
+//! Vectors of any mathematics library come in through [`mint`]: glam's, nalgebra's, cgmath's, and
+//! plain arrays, in `f32` or `f64`. Inside they are glam's, in `f64`.
 
 use crate::model::event::ContactSample;
 use glam::{DVec2, DVec3};
 use mint::{Vector2, Vector3};
 
-/// Squared sine of an angle between edges below which a triangle is a line: what rounding leaves of one.
+/// Squared sine of an angle between edges below which a triangle is a line: what rounding leaves of
+/// one.
 const FLAT: f64 = 1e-24;
 
-/// A triangle in metres, in the space in which the physics engine tells its contacts, with a texture
-/// coordinate at each corner.
+/// A triangle in metres, in the space in which the physics engine tells its contacts, with a
+/// texture coordinate at each corner.
 ///
 /// ```
 /// use asperity::UvTriangle;
@@ -40,8 +41,8 @@ pub struct UvTriangle {
 }
 
 impl UvTriangle {
-    /// The triangle of three corners and their texture coordinates; `None` where the triangle or its
-    /// image in the texture has no area, or a number is not finite.
+    /// The triangle of three corners and their texture coordinates; `None` where the triangle or
+    /// its image in the texture has no area, or a number is not finite.
     #[must_use]
     pub fn new<T: Into<f64>, S: Into<f64>>(
         corners_m: [impl Into<Vector3<T>>; 3],
@@ -60,8 +61,8 @@ impl UvTriangle {
         (has_area && uv_a.is_finite()).then_some(Self { corner_m: a, edges_m, uv: uv_a, uv_edges, axes })
     }
 
-    /// Texture coordinates of a point, of its projection where it lies off the triangle's plane; they run
-    /// on beyond the edges.
+    /// Texture coordinates of a point, of its projection where it lies off the triangle's plane;
+    /// they run on beyond the edges.
     #[must_use]
     pub fn uv_at<T: Into<f64>>(&self, point_m: impl Into<Vector3<T>>) -> [f64; 2] {
         let from_corner = in_space(point_m) - self.corner_m;
@@ -127,7 +128,8 @@ mod tests {
     use super::*;
     use glam::{Vec2, Vec3};
 
-    /// A slanted map P(uv) of which the triangle is a part: u and v are skewed and of different lengths.
+    /// A slanted map P(uv) of which the triangle is a part: u and v are skewed and of different
+    /// lengths.
     const AXES_M: [[f64; 3]; 2] = [[0.3, 0.1, 0.0], [0.1, -0.05, 0.4]];
 
     fn place(uv: [f64; 2]) -> [f64; 3] {

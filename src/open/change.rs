@@ -1,6 +1,7 @@
 //! A changed scene file, applied to the scene that sounds.
 //!
-//! Everything new is made before anything is changed, so that a broken map leaves the old scene as it was.
+//! Everything new is made before anything is changed, so that a broken map leaves the old scene as
+//! it was.
 
 use super::Overrides;
 use crate::files::FileError;
@@ -24,17 +25,20 @@ pub struct Changes {
     pub done: Vec<String>,
     /// Changes that wait, with when they will come.
     pub waiting: Vec<String>,
-    /// Simulations of new sand, to be run on threads of their own as those of [`Engine::workers`](crate::Engine::workers).
+    /// Simulations of new sand, to be run on threads of their own as those of
+    /// [`Engine::workers`](crate::Engine::workers).
     pub workers: Vec<SandWorker>,
 }
 
 impl Scene {
-    /// Makes of the scene that was opened as `before` the one that `after` says, while it sounds: bodies and surfaces that differ, are new or gone,
-    /// new probes, gains of buses. What is fixed when an engine is built is told in [`Changes::waiting`]. `overrides` are those that the
+    /// Makes of the scene that was opened as `before` the one that `after` says, while it sounds:
+    /// bodies and surfaces that differ, are new or gone, new probes, gains of buses. What is fixed
+    /// when an engine is built is told in [`Changes::waiting`]. `overrides` are those that the
     /// scene was opened with.
     ///
     /// # Errors
-    /// When a file cannot be used or a number is refused, nothing has changed. When the queue is full, apply it again after a block.
+    /// When a file cannot be used or a number is refused, nothing has changed. When the queue is
+    /// full, apply it again after a block.
     pub fn apply(
         &mut self,
         names: &mut Names,
@@ -62,8 +66,8 @@ impl Scene {
         Ok(changes)
     }
 
-    /// Gain of impacts on a body that has none of its own: as they are on it, and on a new one as on the others, which share what the level policy
-    /// has found.
+    /// Gain of impacts on a body that has none of its own: as they are on it, and on a new one as
+    /// on the others, which share what the level policy has found.
     fn silent_strike_gain(&self, body: Option<&BodyId>) -> f64 {
         body.and_then(|body| self.strike_gain_of(*body).ok()).unwrap_or(self.strike_gain)
     }

@@ -1,28 +1,34 @@
 //! The level policy: what `full_scale` and `gain` are where a scene does not say.
 //!
-//! One reference stroke, 0.1 m/s at 1 N, is rendered over every surface of the scene with every probe, four times in directions of its own, before anything else; the loudest and
-//! the strongest of them land on the reference levels below. So levels follow from relief, probe, material and modes, whatever they are, and
-//! within a scene surfaces and probes keep their differences. From there a stroke grows as it does: faster and harder is stronger.
+//! One reference stroke, 0.1 m/s at 1 N, is rendered over every surface of the scene with every
+//! probe, four times in directions of its own, before anything else; the loudest and the strongest
+//! of them land on the reference levels below. So levels follow from relief, probe, material and
+//! modes, whatever they are, and within a scene surfaces and probes keep their differences. From
+//! there a stroke grows as it does: faster and harder is stronger.
 //!
 //! | | reference level | head room to full scale |
 //! |---|---|---|
 //! | haptic channel | −26 dBFS rms ([`HAPTIC_REFERENCE`]) | strokes four times as fast and five times as hard, with peaks of four times their rms |
 //! | audio bus | −32 dBFS rms ([`AUDIO_REFERENCE`]) | the same for sound, whose peaks are higher |
 //!
-//! Buses without a gain of their own share one, so that bodies on different buses keep their loudness beside each other: the loudest stroke of
-//! them all lands on the reference.
+//! Buses without a gain of their own share one, so that bodies on different buses keep their
+//! loudness beside each other: the loudest stroke of them all lands on the reference.
 //!
-//! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: the gain by
-//! policy follows from other bodies and leaves these alone; a bus without others has 1.
+//! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has
+//! their level from there: the gain by policy follows from other bodies and leaves these alone; a
+//! bus without others has 1.
 //!
-//! Strikes are far louder than strokes where mechanics has the word, and what rings long adds them up. So impacts have a gain of their
-//! own beside strokes, `strike_gain`, at most 1: one for all bodies whose bus has its gain from here, the greatest with which fifty reference
-//! strikes a second, 10 g of steel at 0.5 m/s, peak within full scale on every one of them. Bodies keep their loudness beside each other when they are
-//! struck; a `strike_gain` that a body writes is its own, and 1 is mechanics'.
+//! Strikes are far louder than strokes where mechanics has the word, and what rings long adds them
+//! up. So impacts have a gain of their own beside strokes, `strike_gain`, at most 1: one for all
+//! bodies whose bus has its gain from here, the greatest with which fifty reference strikes a
+//! second, 10 g of steel at 0.5 m/s, peak within full scale on every one of them. Bodies keep their
+//! loudness beside each other when they are struck; a `strike_gain` that a body writes is its own,
+//! and 1 is mechanics'.
 //!
-//! Where no stroke is heard, one reference strike counts: it peaks at −12 dBFS. Sand is left out, because the
-//! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
-//! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
+//! Where no stroke is heard, one reference strike counts: it peaks at −12 dBFS. Sand is left out,
+//! because the stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`]
+//! and a gain of 1. Where a level was resolved a peak limiter stands behind it, unless the scene
+//! says `limit = false`.
 
 use crate::engine::Engine;
 use crate::files::FileError;
@@ -63,7 +69,8 @@ const SILENT: f64 = 1e-10;
 const FROM: [f64; 2] = [0.31, 0.37];
 /// Directions of strokes, unit vectors of u and v: along threads and across them, and between.
 const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.6, -0.8], [0.0, 1.0], [0.8, 0.6]];
-/// The least power that one of them counts with, over the strongest: along its ribs a file is silent.
+/// The least power that one of them counts with, over the strongest: along its ribs a file is
+/// silent.
 const LEAST_POWER: f64 = 1.0 / 16.0;
 
 impl Levels {
@@ -270,7 +277,8 @@ impl Trials {
         self.strokes.push(Trial { actuator, bus, start_s });
     }
 
-    /// The gain that some buses share: the loudest stroke on them lands on its reference, or a strike where no stroke is heard.
+    /// The gain that some buses share: the loudest stroke on them lands on its reference, or a
+    /// strike where no stroke is heard.
     fn gain(&self, render: &Render, buses: &[usize]) -> f64 {
         let heard =
             |stroke: &Trial| stroke.bus.filter(|bus| buses.contains(bus)).map(|bus| &render.audio[bus][..]);
@@ -284,8 +292,8 @@ impl Trials {
         gain.min(limits::AUDIO_GAIN.high)
     }
 
-    /// Greatest rms of what strokes in all directions give: the mean of their levels in decibels, so that ground that is loud in one of them lands in the
-    /// middle.
+    /// Greatest rms of what strokes in all directions give: the mean of their levels in decibels,
+    /// so that ground that is loud in one of them lands in the middle.
     fn strongest<'a>(&self, render: &Render, of: impl Fn(&Trial) -> Option<&'a [f32]>) -> f64 {
         let power = |trial: &Trial| {
             let samples = of(trial)?;

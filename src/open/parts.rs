@@ -1,5 +1,5 @@
-//! Parts of a scene, each from a table of the scene file by itself: for games, and other languages, that add bodies, surfaces and probes
-//! one by one while the scene runs.
+//! Parts of a scene, each from a table of the scene file by itself: for games, and other languages,
+//! that add bodies, surfaces and probes one by one while the scene runs.
 
 use super::Overrides;
 use crate::files::FileError;
@@ -22,8 +22,8 @@ use toml::{Table, Value};
 pub struct ReadSurface {
     /// The surface, ready to be added.
     pub surface: Surface,
-    /// Simulations that have to run on threads of their own, as those of [`Engine::workers`](crate::Engine::workers); empty unless
-    /// [`Overrides::live`] is set.
+    /// Simulations that have to run on threads of their own, as those of
+    /// [`Engine::workers`](crate::Engine::workers); empty unless [`Overrides::live`] is set.
     pub workers: Vec<SandWorker>,
 }
 
@@ -34,9 +34,10 @@ impl std::fmt::Debug for ReadSurface {
 }
 
 impl Scene {
-    /// A body from the keys of a scene file's `[[body]]`; `name` may be missing, and `bus` has no place here: say
-    /// [`Body::on_bus`]. Paths lie relative to `folder`. A body that has no `strike_gain` is struck as loudly as those of the scene file, whose
-    /// the level policy has found; 1 where nothing was found.
+    /// A body from the keys of a scene file's `[[body]]`; `name` may be missing, and `bus` has no
+    /// place here: say [`Body::on_bus`]. Paths lie relative to `folder`. A body that has no
+    /// `strike_gain` is struck as loudly as those of the scene file, whose the level policy has
+    /// found; 1 where nothing was found.
     ///
     /// ```
     /// use asperity::open::Overrides;
@@ -50,7 +51,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// When a key is unknown, missing or out of its range, or a file cannot be used; the message names it.
+    /// When a key is unknown, missing or out of its range, or a file cannot be used; the message
+    /// names it.
     pub fn read_body(
         &self,
         table: &str,
@@ -66,12 +68,14 @@ impl Scene {
         self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[], self.strike_gain)
     }
 
-    /// A surface from the keys of a scene file's `[[surface]]`; `name` may be missing. It rings `on`, or the body that the table
-    /// names in `names`, and has the finish of that body's material where it says nothing else and the material is not
-    /// [the default one](Body::DEFAULT_MATERIAL). Paths lie relative to `folder`.
+    /// A surface from the keys of a scene file's `[[surface]]`; `name` may be missing. It rings
+    /// `on`, or the body that the table names in `names`, and has the finish of that body's
+    /// material where it says nothing else and the material is not [the default
+    /// one](Body::DEFAULT_MATERIAL). Paths lie relative to `folder`.
     ///
     /// # Errors
-    /// When a key is unknown, missing or out of its range, a file cannot be used, or there is no such body; the message names it.
+    /// When a key is unknown, missing or out of its range, a file cannot be used, or there is no
+    /// such body; the message names it.
     pub fn read_surface(
         &self,
         table: &str,

@@ -3,25 +3,30 @@
 //! ```text
 //! sound ∝ √A        A ∝ (F / κ)^(2/3)        κ = 1/r − H,  H = 2 hollow / reach²
 //! ```
-//! A is the area of Hertz' contact of a sphere of the tip's radius r on ground of the mean curvature H (above 0 in a hollow), √A because
-//! asperities strike each by itself. So a fingertip on waves as wide as itself is heard once a wave, even where the waves are so smooth that its mass
-//! follows them without a sound: on a crest it touches with less of its skin than on a plane, in a hollow with more.
+//! A is the area of Hertz' contact of a sphere of the tip's radius r on ground of the mean
+//! curvature H (above 0 in a hollow), √A because asperities strike each by itself. So a fingertip
+//! on waves as wide as itself is heard once a wave, even where the waves are so smooth that its
+//! mass follows them without a sound: on a crest it touches with less of its skin than on a plane,
+//! in a hollow with more.
 
 use crate::prepared::stiffness::within;
 
-/// Radius of a fingertip's pulp, m: of what has no tip of its own. Hertz fits of fingers take 5 to 10 mm; **chosen** among them.
+/// Radius of a fingertip's pulp, m: of what has no tip of its own. Hertz fits of fingers take 5 to
+/// 10 mm; **chosen** among them.
 pub(crate) const FINGERTIP_RADIUS_M: f64 = 8e-3;
-/// How far from its middle a tip feels how the ground bends, over its radius: about the radius of its area of contact. **Chosen.**
+/// Distance from its middle at which a tip feels how the ground bends, over its radius: about the
+/// radius of its area of contact. **Chosen.**
 const REACH: f64 = 0.25;
 /// κ r in the closest hollow, where the law of a small area ends, and on the sharpest crest.
 const CLOSENESS: (f64, f64) = (0.25, 16.0);
 
-/// How much louder a contact is than at 1 N on a plane.
+/// Loudness of a contact over that at 1 N on a plane.
 pub(crate) fn loudness(force_n: f64) -> f64 {
     libm::cbrt(within(force_n))
 }
 
-/// How much louder it is where the ground bends than on a plane; `hollow_m` says how much higher the ground lies at a reach.
+/// Loudness where the ground bends over that on a plane; `hollow_m` says how much higher the ground
+/// lies at a reach.
 pub(crate) fn nestling(tip_radius_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> f64 {
     let radius_m = if tip_radius_m > 0.0 { tip_radius_m } else { FINGERTIP_RADIUS_M };
     let reach_m = REACH * radius_m;

@@ -6,8 +6,8 @@ use asperity_dsp::modal_bank::{FirstSamples, GroupState, LANES, MissingSamples, 
 pub(crate) use asperity_dsp::modal_bank::{MODE_LEVELS, SheddingLevels};
 use asperity_dsp::mode::Mode;
 
-/// Longest contact of an impact, s: 5 kg of foam that fall 5 cm. What would last longer lasts so long, at every rate, and is
-/// counted ([`Stats::shortened`](crate::Stats::shortened)).
+/// Longest contact of an impact, s: 5 kg of foam that fall 5 cm. What would last longer lasts so
+/// long, at every rate, and is counted ([`Stats::shortened`](crate::Stats::shortened)).
 pub const LONGEST_CONTACT_S: f64 = 0.17;
 
 /// The bank of a body.
@@ -16,7 +16,8 @@ pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 /// Which contact an input belongs to: a voice and the sample at which it began.
 pub(crate) type Owner = (usize, u64);
 
-/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
+/// Deficit of a bank of these modes in the first samples of a strike, for each place and each level
+/// of modes left out.
 pub(crate) fn first_samples(
     modes: &[(Mode, [f32; MAX_POSITIONS])],
     places: usize,

@@ -21,22 +21,26 @@ use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// What may strike the bank at once: the body's positions, its places, and what rubs it.
+/// Largest number of inputs of the bank at once: the body's positions, its places, and what rubs
+/// it.
 const MOST_INPUTS: usize = MAX_POSITIONS + FIELD_INPUTS + 2;
 const _: () = assert!(MOST_INPUTS <= modal_bank::MAX_INPUTS);
-/// What strikes most bodies at once; a table for more costs as much as some samples of a short block.
+/// Number of inputs of most bodies at once; a table for more costs as much as some samples of a
+/// short block.
 const FEW_INPUTS: usize = 4;
 
-/// φ² times the mass where a mode of a body swings most: that of a string or a bar held at its ends. A plate has 4, a ball about 5.
+/// φ² times the mass where a mode of a body swings most: that of a string or a bar held at its
+/// ends. A plate has 4, a ball about 5.
 const ANTINODE: f64 = 2.0;
 
-/// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
+/// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes
+/// alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
     bank: Bank,
-    /// How many of its groups hear anything at each level of modes left out.
+    /// Number of its groups that are driven at each level of modes left out.
     levels: SheddingLevels,
     places: Vec<Place>,
     /// For a body that can be touched anywhere.
@@ -46,32 +50,33 @@ pub(crate) struct BodySlot {
     ones: Box<[LaneGains]>,
     bursts: Bursts,
     click: Option<Click>,
-    /// Of impacts beside strokes.
+    /// Gain of impacts beside strokes.
     strike_gain: f64,
-    /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
+    /// Part that the bank leaves out of the first samples of strikes, in the output's units, as far
+    /// ahead as the places' buses.
     early: ImpulseRing<f32>,
 }
 
 /// One strike position: what reaches the body there.
 struct Place {
-    /// What each lane takes; empty for the only position of a body.
+    /// Gain of each lane; empty for the only position of a body.
     gains: Vec<LaneGains>,
     /// For each level of modes left out.
     first_samples: [FirstSamples; MODE_LEVELS],
     bus: ImpulseRing,
-    /// What contacts send during the present stretch.
+    /// Impulses of contacts during the present stretch.
     contacts_n_s: [f64; MAX_BLOCK],
     touched: bool,
     /// All of it, while the stretch is rendered.
     input: [f32; MAX_BLOCK],
 }
 
-/// How a stretch is rendered.
+/// Way of rendering a stretch.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
     /// Absolute index of the first sample.
     pub(crate) position: u64,
-    /// How many of the [`MODE_LEVELS`] are left out because blocks run late.
+    /// Number of the [`MODE_LEVELS`] that are left out because blocks run late.
     pub(crate) mode_level: usize,
 }
 
@@ -107,8 +112,9 @@ impl Place {
 }
 
 impl BodySlot {
-    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent. A body without shapes
-    /// can be rubbed if its mass is known. Where machines are late its modes are left out as they are missed at this level, that of the loudest.
+    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz`
+    /// stay silent. A body without shapes can be rubbed if its mass is known. Where machines are
+    /// late its modes are left out as they are missed at this level, that of the loudest.
     pub(crate) fn new(
         model: &ModalModel,
         mass_kg: Option<f64>,
@@ -119,7 +125,8 @@ impl BodySlot {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
         let modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
-        // What nobody would miss comes last; between two levels what rings longest comes first, so that the groups still awake are the first ones.
+        // What nobody would miss comes last; between two levels what rings longest comes first, so
+        // that the groups still awake are the first ones.
         let mut order = vec![Ranked::default(); modes.len()];
         let plain: Vec<Mode> = modes.iter().map(|(_, (mode, _))| *mode).collect();
         let levels = modal_bank::shedding_order(&plain, TYPICAL_IMPULSE_N_S, loudest_db_spl, &mut order);
@@ -179,7 +186,8 @@ impl BodySlot {
         &mut self.places[position.min(last)]
     }
 
-    /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as `mode_level`.
+    /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as
+    /// `mode_level`.
     pub(crate) fn strike(
         &mut self,
         spot: &Spot,
@@ -275,14 +283,15 @@ impl BodySlot {
         self.early.clear();
     }
 
-    /// How loud it rings: the root of the sum of its modes' squared amplitudes; infinite where what has struck it has not sounded yet.
+    /// Level of its ringing: the root of the sum of its modes' squared amplitudes; infinite where
+    /// what has struck it has not sounded yet.
     pub(crate) fn loudness(&self, position: u64) -> f32 {
         let waits = !self.places.iter().all(|place| place.is_silent(position));
         let waits = waits || self.field.as_ref().is_some_and(|field| !field.is_silent(position));
         if waits { f32::INFINITY } else { self.bank.energy().sqrt() }
     }
 
-    /// Whether nothing rings and nothing is coming.
+    /// Tests whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.bank.awake() == 0
             && self.bursts.is_silent(position)
@@ -292,7 +301,8 @@ impl BodySlot {
             && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
     }
 
-    /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
+    /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck
+    /// it.
     pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
         let left_out = self.ring(terms, out);
         self.add_strikes(terms.position, out);
@@ -304,7 +314,8 @@ impl BodySlot {
         if self.is_silent(position) { 0 } else { modal_bank::LANES * self.bank.groups().max(1) }
     }
 
-    /// [`render`](Self::render) without the first samples of strikes ([`add_strikes`](Self::add_strikes)): nearly all of the work.
+    /// [`render`](Self::render) without the first samples of strikes
+    /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
     pub(crate) fn ring(&mut self, terms: Terms, out: &mut [f32]) -> usize {
         if self.is_silent(terms.position) {
             self.end_stretch(terms.position, out.len());
@@ -317,7 +328,8 @@ impl BodySlot {
         }
     }
 
-    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes.
+    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first
+    /// samples of strikes.
     pub(crate) fn add_strikes(&mut self, position: u64, out: &mut [f32]) {
         self.bursts.render(position, out);
         self.begin_strikes(position, out);

@@ -1,4 +1,5 @@
-//! Strikes and contacts anywhere on a body that has shapes: each has an input of its own into the modal bank, with the gains of its place.
+//! Strikes and contacts anywhere on a body that has shapes: each has an input of its own into the
+//! modal bank, with the gains of its place.
 //!
 //! A contact that slides changes its gains without a step ([`Slider`]).
 
@@ -16,23 +17,26 @@ use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSam
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Contacts that may slide over a body at the same time, each with gains of its own; more excite it where its own amplitudes belong.
+/// Contacts that may slide over a body at the same time, each with gains of its own; more excite it
+/// where its own amplitudes belong.
 pub(crate) const SLIDERS: usize = 16;
-/// Strikes at different places whose pulses may overlap; one more strikes where the one that ends first does.
+/// Strikes at different places whose pulses may overlap; one more strikes where the one that ends
+/// first does.
 pub(crate) const STRIKES: usize = 8;
 /// Inputs that a field may have.
 pub(crate) const FIELD_INPUTS: usize = STRIKES + 2 * SLIDERS;
 
 /// The shapes of a body, as the audio half owns them.
 pub(crate) struct BodyField {
-    /// Motion of every point, mode after mode in the order of the bank, as a share of the amplitude that the bank was designed with.
+    /// Motion of every point, mode after mode in the order of the bank, as a share of the amplitude
+    /// that the bank was designed with.
     motion: Box<[[f32; 3]]>,
     points: usize,
     missing: Box<[MissingSamples]>,
     holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
-    /// How far a gain goes within a cell.
+    /// Largest change of a gain within a cell.
     glide: f32,
     sample_rate_hz: f64,
     /// Up to where it has been rendered.
@@ -80,7 +84,8 @@ impl BodyField {
         }))
     }
 
-    /// A pulse at a place. Returns what the bank leaves out of its first samples while `driven` groups hear it.
+    /// A pulse at a place. Returns what the bank leaves out of its first samples while `driven`
+    /// groups hear it.
     pub(crate) fn strike(
         &mut self,
         place: &StrikePlace,
@@ -103,7 +108,8 @@ impl BodyField {
         sum.first_samples()
     }
 
-    /// Adds what a contact sends at its place during the present stretch; false where every slider is taken.
+    /// Adds what a contact sends at its place during the present stretch; false where every slider
+    /// is taken.
     pub(crate) fn touch(&mut self, owner: Owner, place: &StrikePlace, impulse_n_s: &[f64]) -> bool {
         let known = self.sliders.iter().position(|slider| slider.owner == Some(owner));
         // One that has not been touched for a cell is free.
@@ -124,7 +130,7 @@ impl BodyField {
         self.holding.press(owner, place, probe, share);
     }
 
-    /// Whether nothing is on its way from `position` on.
+    /// Tests whether nothing is on its way from `position` on.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.strikes.iter().all(|struck| struck.bus.is_empty(position))
             && self.sliders.iter().all(Slider::is_silent)
@@ -157,8 +163,8 @@ impl BodyField {
         }
     }
 
-    /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on. A group of the bank whose modes have
-    /// changed, if one has.
+    /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on. A
+    /// group of the bank whose modes have changed, if one has.
     pub(crate) fn end_stretch(&mut self, position: u64, n: usize, bank: &mut Bank) -> Option<usize> {
         self.position = position + n as u64;
         let at_grid = self.position.is_multiple_of(MAX_BLOCK as u64);
@@ -235,7 +241,8 @@ mod tests {
     fn gains_of_a_contact_that_slides_have_no_step_above_minus_sixty_decibels_and_arrive() {
         let model = strip();
         let places = StrikeField::new(model.shapes.clone().unwrap());
-        // As the bank is designed: each at its amplitude where it swings most, so that the greatest gain is 1.
+        // As the bank is designed: each at its amplitude where it swings most, so that the greatest
+        // gain is 1.
         let modes: Vec<(usize, Mode)> = model.unit_modes().map(|(mode, _)| mode).enumerate().collect();
         let groups = design_groups(&model.modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();

@@ -1,9 +1,12 @@
-//! A rubbed body: one contact that sticks and slips on it, coupled with its modal bank in every sample (`dsp::stick_slip`).
+//! A rubbed body: one contact that sticks and slips on it, coupled with its modal bank in every
+//! sample (`dsp::stick_slip`).
 //!
-//! The body's own bank tells, at the beginning of a cell of the absolute sample grid, how the rubbed place will move by itself; a second bank of
-//! the same modes, which sounds as the speed of that place, tells what strikes the body within the cell beside, and sleeps when nothing does.
-//! From both follow the forces, which the body's bank then hears as it hears any other contact. Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact that
-//! begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
+//! The body's own bank tells, at the beginning of a cell of the absolute sample grid, how the
+//! rubbed place will move by itself; a second bank of the same modes, which sounds as the speed of
+//! that place, tells what strikes the body within the cell beside, and sleeps when nothing does.
+//! From both follow the forces, which the body's bank then hears as it hears any other contact.
+//! Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact
+//! that begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
 
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::{Bank, Owner};
@@ -31,20 +34,20 @@ const SPEED: GroupOptions = GroupOptions { impulse_kernel_compensation: false, t
 /// Nothing rubs.
 const STILL: Sweep = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s: 0.0 };
 
-/// What a contact rubs with during a stretch.
+/// Rubbing of a contact during a stretch.
 pub(crate) struct RubAsked<'a> {
     pub(crate) owner: Owner,
-    /// Where, and along what.
+    /// Place, and direction along the body.
     pub(crate) spot: Spot,
     pub(crate) friction: Friction,
     pub(crate) sweep_m_s: &'a [f64],
     pub(crate) normal_force_n: &'a [f64],
 }
 
-/// How far it has come.
+/// Progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Nobody rubs.
+    /// Empty: nothing rubs.
     Idle,
     /// The speeds are being designed.
     Settling,
@@ -59,14 +62,15 @@ pub(crate) struct BodyRub {
     unit_per_sqrt_kg: Box<[f64]>,
     /// Gains at the strike positions of a body without shapes.
     positions: Box<[Box<[LaneGains]>]>,
-    /// The speed of the rubbed place: of the body by itself, and because of what strikes it within a cell.
+    /// The speed of the rubbed place: of the body by itself, and because of what strikes it within
+    /// a cell.
     ahead: Box<[AheadGroup]>,
     struck: Bank,
     /// The gains that each group of it was designed for, and whether its modes have changed since.
     designed: Box<[LaneGains]>,
     stale: Box<[bool]>,
     answers: Box<[Answer]>,
-    /// Of the groups that hear anything, and how many those are.
+    /// Gains of the groups that are driven, and how many those are.
     answer: (Answer, usize),
     coupled: Coupled,
     slider: Slider,
@@ -75,7 +79,7 @@ pub(crate) struct BodyRub {
     owner: Option<Owner>,
     friction: Friction,
     sweep: [Sweep; CELL],
-    /// Whether it was asked during the present stretch; cells since it was asked last.
+    /// True where it was asked during the present stretch; cells since it was asked last.
     asked: bool,
     silent_cells: u32,
     /// The group that is looked at next.
@@ -84,7 +88,8 @@ pub(crate) struct BodyRub {
 }
 
 impl BodyRub {
-    /// For the modes of a bank in their order, the motion of each where its gain is 1, and the gains at each strike position.
+    /// For the modes of a bank in their order, the motion of each where its gain is 1, and the
+    /// gains at each strike position.
     pub(crate) fn new(
         modes: &[Mode],
         unit_per_sqrt_kg: Box<[f64]>,
@@ -151,12 +156,12 @@ impl BodyRub {
         true
     }
 
-    /// Whether it has to be run.
+    /// Tests whether it has to be run.
     pub(crate) fn rubs(&self) -> bool {
         self.stage == Stage::Rubs
     }
 
-    /// Whether there is a contact, if only one that begins.
+    /// Tests whether there is a contact, if only one that begins.
     pub(crate) fn is_idle(&self) -> bool {
         self.stage == Stage::Idle
     }
@@ -168,7 +173,8 @@ impl BodyRub {
         (self.owner, self.stage, self.asked) = (None, Stage::Idle, false);
     }
 
-    /// The forces of the next `n` samples from what strikes the body beside them, while its first `driven` groups hear anything.
+    /// The forces of the next `n` samples from what strikes the body beside them, while its first
+    /// `driven` groups hear anything.
     pub(crate) fn run(&mut self, position: u64, n: usize, driven: usize, sound: &Bank, others: &[Input<'_>]) {
         let first = position as usize % CELL;
         if first == 0 {
@@ -202,7 +208,8 @@ impl BodyRub {
         self.stale[group] = true;
     }
 
-    /// The stretch up to `position` has been rendered: at the end of a cell some groups are designed for where it is by now.
+    /// The stretch up to `position` has been rendered: at the end of a cell some groups are
+    /// designed for where it is by now.
     pub(crate) fn end_stretch(&mut self, position: u64) {
         self.slider.end_stretch(position, self.glide);
         self.sweep = [STILL; CELL];

@@ -2,8 +2,8 @@
 
 use crate::model::residual::Residual;
 
-/// Bursts of one body that sound at the same time; a further strike takes the place of the one that is
-/// nearest to its end.
+/// Bursts of one body that sound at the same time; a further strike takes the place of the one that
+/// is nearest to its end.
 pub const AT_ONCE: usize = 8;
 
 /// The bursts of one body that are sounding.
@@ -43,12 +43,12 @@ impl Bursts {
         }
     }
 
-    /// Whether nothing sounds from `position` on.
+    /// Tests whether nothing sounds from `position` on.
     pub(crate) fn silence(&mut self) {
         (self.playing, self.busy_until) = ([Playing::default(); AT_ONCE], 0);
     }
 
-    /// Whether none plays or will.
+    /// Tests whether none plays or will.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.busy_until <= position
     }

@@ -1,8 +1,9 @@
 //! A held body: contacts that press on it detune and damp its modes while they do.
 //!
-//! Which contacts press, where and how stiffly is looked at once a cell of the absolute sample grid. When that changes the groups of the
-//! bank are designed anew, one a cell, so that no cell has much to do; each mode goes on at its level and phase. A body that
-//! nobody presses any more gets the coefficients back that it had, to the bit.
+//! Which contacts press, where and how stiffly is looked at once a cell of the absolute sample
+//! grid. When that changes the groups of the bank are designed anew, one a cell, so that no cell
+//! has much to do; each mode goes on at its level and phase. A body that nobody presses any more
+//! gets the coefficients back that it had, to the bit.
 
 use crate::model::mode_shapes::ModeShapes;
 use crate::model::strike_field::StrikePlace;
@@ -15,10 +16,11 @@ use std::ops::Range;
 
 /// Contacts that may hold a body: a hand. More press without being heard.
 const HOLDS: usize = 5;
-/// Modes on either side, by frequency, that pull at a mode through a finger; those further away hardly do.
+/// Modes on either side, by frequency, that pull at a mode through a finger; those further away
+/// hardly do.
 const NEIGHBOURS: usize = 12;
 
-/// What holds a body, and what its bank becomes by it.
+/// Contacts that hold a body, and the modes that its bank gets by them.
 pub(crate) struct Holding {
     /// The groups as they were designed, and their modes.
     free: Box<[ModeGroup]>,
@@ -124,7 +126,8 @@ impl Holding {
         self.changed = true;
     }
 
-    /// At the end of a cell: who did not press has let go, and one group follows what has changed; which it is.
+    /// At the end of a cell: who did not press has let go, and one group follows what has changed;
+    /// which it is.
     pub(crate) fn go_on(&mut self, bank: &mut Bank) -> Option<usize> {
         for press in &mut self.holds {
             if !std::mem::take(&mut press.here) && press.owner.take().is_some() {
@@ -154,7 +157,8 @@ impl Holding {
             return Some(*free);
         }
         let HeldModes { modes, count } = self.modes_now(index)?;
-        // Poles of a mode that was designed once can be designed again; otherwise it stays as it was.
+        // Poles of a mode that was designed once can be designed again; otherwise it stays as it
+        // was.
         design_group(&modes[..count], self.sample_rate_hz, &GroupOptions::IMPULSE_RING).ok()
     }
 
@@ -171,12 +175,12 @@ impl Holding {
         Some(now)
     }
 
-    /// Whether nobody presses.
+    /// Tests whether nobody presses.
     fn is_free(&self) -> bool {
         self.holds.iter().all(|press| press.owner.is_none())
     }
 
-    /// Where the mode of that rank is now.
+    /// Frequency and decay of the mode of that rank now.
     fn held(&self, rank: usize) -> Option<Pole> {
         let from = rank.saturating_sub(NEIGHBOURS);
         let near = from..(rank + NEIGHBOURS + 1).min(self.poles.len());
@@ -195,7 +199,7 @@ impl Holding {
 }
 
 impl Press {
-    /// What it does to the modes of a range, by rising frequency.
+    /// Effect on the modes of a range, by rising frequency.
     fn here(&self, near: &Range<usize>) -> Hold<'_> {
         Hold { probe: &self.probe, phi_per_sqrt_kg: &self.phi_per_sqrt_kg[near.clone()] }
     }

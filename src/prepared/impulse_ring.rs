@@ -1,7 +1,8 @@
 //! Impulse ring: what is on its way to a body, on the absolute sample grid.
 //!
-//! Pulses are deposited where they fall, also between two samples, and taken out sample by sample; what has been taken is zero for the next
-//! turn. It knows until when anything is in it, so that an empty ring costs nothing.
+//! Pulses are deposited where they fall, also between two samples, and taken out sample by sample;
+//! what has been taken is zero for the next turn. It knows until when anything is in it, so that an
+//! empty ring costs nothing.
 
 use asperity_dsp::hertz::{self, HertzPulse};
 
@@ -22,7 +23,7 @@ impl<T: Copy + Default> ImpulseRing<T> {
         Self { values: vec![T::default(); samples].into(), busy_until: 0 }
     }
 
-    /// Whether nothing comes from `position` on.
+    /// Tests whether nothing comes from `position` on.
     pub(crate) fn is_empty(&self, position: u64) -> bool {
         self.busy_until <= position
     }

@@ -1,5 +1,5 @@
-//! Prepared resources, designed by the game half and owned by the audio half: everything that a body or a surface needs to sound, in memory made
-//! beforehand.
+//! Prepared resources, designed by the game half and owned by the audio half: everything that a
+//! body or a surface needs to sound, in memory made beforehand.
 
 pub(crate) mod area;
 pub(crate) mod bank;

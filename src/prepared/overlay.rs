@@ -1,17 +1,17 @@
-//! The micro-relief over a surface's own relief (Hasti §III-C): a tile of it, so that a lap comes back to the same
-//! place.
+//! The micro-relief over a surface's own relief (Hasti §III-C): a tile of it, so that a lap comes
+//! back to the same place.
 //!
 //! ```text
 //! h(x) = cos(πw/2) n(x) + sin(πw/2) n(x − W)      x: place within the tile;  w: as in the texture's `tiled`
 //! ```
-//! Where the surface's own relief is at home, from its texels up, the noise is added below it only; where there is
-//! none, all of it, whatever the map's resolution:
+//! Where the surface's own relief is at home, from its texels up, the noise is added below it only;
+//! where there is none, all of it, whatever the map's resolution:
 //!
 //! ```text
 //! n(x) = n_below(x) + c (n_all(x) − n_below(x))      c: 1 where the source has no relief, 0 from 2 rms on
 //! ```
-//! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
-//! power: sine and cosine, because the two are unrelated.
+//! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning,
+//! at constant power: sine and cosine, because the two are unrelated.
 
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
@@ -20,7 +20,7 @@ use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
 
-/// How a surface lays the noise.
+/// Layout of the noise on a surface.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Overlay {
     axes: [TileAxis; 2],
@@ -33,16 +33,17 @@ pub(crate) struct Overlay {
     /// For tips that have ridden here, and which rides now.
     tips: [Tip; TIPS],
     now: usize,
-    /// Where the next tip's weights go.
+    /// Room for the next tip's weights.
     next: usize,
 }
 
-/// Tips whose weights are kept; one more takes the place of the oldest, and its weights are worked out when it comes back.
+/// Tips whose weights are kept; one more takes the place of the oldest, and its weights are worked
+/// out when it comes back.
 const TIPS: usize = 4;
 /// Roughness whose relief tells how much room the noise needs: the middle of the scale.
 const ORDINARY: f64 = 0.5;
 
-/// What the octaves weigh for one tip.
+/// Weights of the octaves for one tip.
 #[derive(Debug, Clone, Copy)]
 struct Tip {
     radius_m: f64,
@@ -69,14 +70,14 @@ pub(crate) struct NoiseBetween<'a> {
     pub(crate) looks: [Option<Look<'a>>; 3],
     /// At the samples, m.
     pub(crate) at_m: &'a mut [f64],
-    /// Whether the surface told.
+    /// True where the surface told.
     pub(crate) seen: &'a mut bool,
 }
 
 /// Some share of the way from the sample before each.
 pub(crate) struct Look<'a> {
     pub(crate) position_m: &'a [[f64; 2]],
-    /// What is there, m.
+    /// Heights that are there, m.
     pub(crate) height_m: &'a mut [f64],
 }
 
@@ -85,15 +86,17 @@ pub(crate) struct NoiseWay<'a> {
     pub(crate) path: NoisePath<'a>,
     /// Its least and greatest coordinates, those midway between samples included.
     pub(crate) bounds_m: [[f64; 2]; 2],
-    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise it follows from `power_m2`.
+    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has
+    /// no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise it follows from
+    /// `power_m2`.
     pub(crate) share: Option<f64>,
     /// Relief that the source really has at each sample, m².
     pub(crate) power_m2: &'a [f64],
 }
 
-/// Where a path lies in its lap of the tile, and what meets there.
+/// Place of a path in its lap of the tile, and what meets there.
 struct Lap {
-    /// Where the lap begins that all of it lies in, if it is one.
+    /// Beginning of the lap that all of it lies in, if it is one.
     begin_m: [Option<f64>; 2],
     position_m: [[f64; 2]; MAX_BLOCK],
     places: [[Place; 2]; MAX_BLOCK],
@@ -134,7 +137,7 @@ impl Overlay {
         overlay
     }
 
-    /// What is added from here on is what a sphere of this radius rides on, m; 0 is a point.
+    /// Sets the radius of the sphere that rides on what is added from here on, m; 0 is a point.
     pub(crate) fn tune(&mut self, radius_m: f64) {
         if self.tips[self.now].radius_m == radius_m {
             return;
@@ -156,7 +159,8 @@ impl Overlay {
         self.next = (self.next + 1) % TIPS;
     }
 
-    /// Adds the relief along a path to `height_m`; all slices are equally long, at most [`MAX_BLOCK`].
+    /// Adds the relief along a path to `height_m`; all slices are equally long, at most
+    /// [`MAX_BLOCK`].
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
@@ -222,7 +226,8 @@ impl Overlay {
         }
     }
 
-    /// What the octaves weigh that are there whatever room a source's own relief leaves: those below its band.
+    /// Weights of the octaves that are there whatever room a source's own relief leaves: those
+    /// below its band.
     pub(crate) fn short_waves(&self) -> &OctaveWeights {
         let Tip { below, all, .. } = &self.tips[self.now];
         if self.minds_relief() { below } else { all }
@@ -233,7 +238,7 @@ impl Overlay {
         fills_m2(self.ordinary_m)
     }
 
-    /// Whether the source's own relief matters.
+    /// Tests whether the source's own relief matters.
     pub(crate) fn minds_relief(&self) -> bool {
         self.longest_m.is_finite()
     }
@@ -308,7 +313,8 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
     room * room * (3.0 - 2.0 * room)
 }
 
-/// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and anew only where the place differs.
+/// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and
+/// anew only where the place differs.
 fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]]) {
     let mut last = [(0.0, [1.0, 0.0]); 2];
     for (gains, places) in gains.iter_mut().zip(places) {

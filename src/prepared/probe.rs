@@ -1,10 +1,12 @@
-//! A probe, prepared for the audio half: its contact model, its mobility, and what its micro-collisions weigh.
+//! A probe, prepared for the audio half: its contact model, its mobility, and what its
+//! micro-collisions weigh.
 //!
 //! ```text
 //! collision   m (1 + e) v      m = pad mass; of a tool whose contact is far softer than a ball on hard ground, the ball alone, 4/3 π r³ ρ
 //! ```
-//! A contact of 6.5 kN/m is not that of a steel tip of 1.6 mm on stone, which Hertz has at 3 MN/m: it is the tool's own bending and its grip. What strikes the
-//! ground without that spring between is the tip in front of it, and the momentum of the tool behind arrives with the contact force.
+//! A contact of 6.5 kN/m is not that of a steel tip of 1.6 mm on stone, which Hertz has at 3 MN/m:
+//! it is the tool's own bending and its grip. What strikes the ground without that spring between
+//! is the tip in front of it, and the momentum of the tool behind arrives with the contact force.
 
 use crate::prepared::stiffness::Ladder;
 use crate::prepared::stroking::restitution;
@@ -17,14 +19,15 @@ use asperity_dsp::simd::Level;
 #[derive(Debug, Clone)]
 pub(crate) struct PreparedProbe {
     pub(crate) micro_contact: MicroContact,
-    /// The same on contacts of any stiffness.
+    /// Designs on contacts of any stiffness.
     pub(crate) ladder: Ladder,
     pub(crate) mobility: Mobility,
     /// Momentum of a micro-collision per closing speed, kg: colliding mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
     /// Contact time over that of the engine's own probe: (m / m₀)^(2/5).
     pub(crate) contact_time_ratio: f64,
-    /// Whether its rows come one sample before those of the engine's integrator, and have to wait.
+    /// True where its rows come one sample before those of the engine's integrator, and have to
+    /// wait.
     pub(crate) waits: bool,
 }
 
@@ -32,10 +35,11 @@ pub(crate) struct PreparedProbe {
 const HARD_PA: f64 = 5e10;
 /// Density of a tip, kg/m³: steel.
 const TIP_KG_M3: f64 = 7800.0;
-/// A contact below this share of Hertz' stiffness at 1 N is a spring of the tool. **Chosen**: the stylus lies at 0.002, other presets above.
+/// A contact below this share of Hertz' stiffness at 1 N is a spring of the tool. **Chosen**: the
+/// stylus lies at 0.002, other presets above.
 const OF_THE_TOOL: f64 = 0.03;
 
-/// What collides in a micro-collision, kg.
+/// Mass that collides in a micro-collision, kg.
 pub(crate) fn colliding_kg(probe: &Probe) -> f64 {
     let radius_m = probe.tip_radius_m;
     let hertz_n_m = libm::cbrt(6.0 * HARD_PA * HARD_PA * radius_m);

@@ -1,20 +1,22 @@
-//! Slider: the input of one contact into the modal bank of a body, with gains that follow where it is.
+//! Slider: the input of one contact into the modal bank of a body, with gains that follow where it
+//! is.
 //!
-//! Gains glide to those of the place reported last, a step every cell of the absolute sample
-//! grid, and inside a cell along a straight line, which is the same impulses twice: fading out with the gains that were, fading in with
-//! those that come. So the bank hears no step, whatever the blocks.
+//! Gains glide to those of the place reported last, a step every cell of the absolute sample grid,
+//! and inside a cell along a straight line, which is the same impulses twice: fading out with the
+//! gains that were, fading in with those that come. So the bank hears no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::Owner;
 use asperity_dsp::modal_bank::{Input, LANES, LaneGains};
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// How fast gains follow a contact, s: less than the time between two reports of an ordinary game.
+/// Time in which gains follow a contact, s: less than the time between two reports of an ordinary
+/// game.
 const GLIDE_S: f64 = 0.008;
 /// A gain nearer than this to where it goes is there.
 const ARRIVED: f32 = 1e-6;
 
-/// How far a gain goes within a cell.
+/// Largest change of a gain within a cell.
 pub(crate) fn glide(sample_rate_hz: f64) -> f32 {
     (1.0 - libm::exp(-(MAX_BLOCK as f64) / (GLIDE_S * sample_rate_hz))) as f32
 }
@@ -27,14 +29,14 @@ pub(crate) struct Slider {
     gains: [Box<[LaneGains]>; 3],
     arrived: bool,
     pub(crate) touched: bool,
-    /// When it was touched last.
+    /// Last touch.
     pub(crate) touched_at: u64,
     contacts_n_s: [f64; MAX_BLOCK],
     inputs: [[f32; MAX_BLOCK]; 2],
 }
 
 impl Slider {
-    /// Nobody's, for so many groups of modes.
+    /// Unused slider, for so many groups of modes.
     pub(crate) fn new(groups: usize) -> Self {
         let gains = || vec![LaneGains([0.0; LANES]); groups].into_boxed_slice();
         Self {
@@ -103,7 +105,7 @@ impl Slider {
         add(Input { impulses: &self.inputs[1][..n], gains: &self.gains[1] });
     }
 
-    /// Whether nothing is on its way.
+    /// Tests whether nothing is on its way.
     pub(crate) fn is_silent(&self) -> bool {
         !self.touched
     }

@@ -1,8 +1,8 @@
-//! Where something touches a body.
+//! Spot: the place of a touch on a body.
 
 use crate::model::strike_field::StrikePlace;
 
-/// Where something touches a body.
+/// Place of a touch on a body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spot {
     /// A place of its surface, for a body that has shapes.
@@ -12,6 +12,6 @@ pub(crate) struct Spot {
 }
 
 impl Spot {
-    /// Where the body's own amplitudes belong.
+    /// Place that the body's own amplitudes belong to.
     pub(crate) const FIRST: Self = Self { place: None, position: 0 };
 }

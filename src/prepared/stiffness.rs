@@ -1,12 +1,13 @@
-//! How stiff a contact is: probe and ground in series, each stiffening with the reported force.
+//! Stiffness of a contact: probe and ground in series, each stiffening with the reported force.
 //!
 //! ```text
 //! 1/k(F) = 1/(k_m Fⁿ) + 1/(k_g Fᵍ)        k_g = (6 E*² r)^(1/3),  F in newtons
 //! ```
-//! k_m and n are the probe's. k_g is the slope at 1 N of Hertz' sphere of the tip's radius r on ground of the modulus
-//! E* = E/(1 − ν²), and g = 0.8, because pile and foam close up under load (0.7–0.8, fitted to published strokes with a tool:
-//! Culbertson, Lopez Delgado, Kuchenbecker 2014). From 0.1 GPa on ground counts as rigid and k = k_m Fⁿ: stone, wood and plastic do not give
-//! way beside skin or a hand-held tool. Rubber and foam do, and are felt softer.
+//! k_m and n are the probe's. k_g is the slope at 1 N of Hertz' sphere of the tip's radius r on
+//! ground of the modulus E* = E/(1 − ν²), and g = 0.8, because pile and foam close up under load
+//! (0.7–0.8, fitted to published strokes with a tool: Culbertson, Lopez Delgado, Kuchenbecker
+//! 2014). From 0.1 GPa on ground counts as rigid and k = k_m Fⁿ: stone, wood and plastic do not
+//! give way beside skin or a hand-held tool. Rubber and foam do, and are felt softer.
 
 use crate::model::material::Material;
 use asperity_dsp::DesignError;
@@ -23,7 +24,7 @@ const LEAST_RADIUS_M: f64 = crate::model::surface::EXCITER_RADIUS_M;
 /// Octaves of stiffness below and above a probe's own that a contact can take.
 const OCTAVES: (usize, usize) = (5, 3);
 
-/// What a probe presses on.
+/// Ground that a probe presses on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ground {
     modulus_pa: f64,
@@ -31,7 +32,7 @@ pub(crate) struct Ground {
 }
 
 impl Ground {
-    /// Of a material.
+    /// Ground of a material.
     pub(crate) fn of(material: Material) -> Self {
         let modulus_pa = material.young_pa / (1.0 - material.poisson * material.poisson);
         Self { modulus_pa, hard: material.young_pa >= SOFT_PA }
@@ -42,7 +43,7 @@ impl Ground {
         self.modulus_pa
     }
 
-    /// Whether it counts as rigid beside a probe.
+    /// Tests whether it counts as rigid beside a probe.
     fn is_hard(&self) -> bool {
         self.hard
     }
@@ -69,7 +70,7 @@ pub(crate) fn within(force_n: f64) -> f64 {
 #[derive(Debug, Clone)]
 pub(crate) struct Ladder {
     rungs: Box<[MicroContact]>,
-    /// Of the first rung.
+    /// Stiffness of the first rung.
     lowest_n_m: f64,
 }
 

@@ -1,4 +1,5 @@
-//! Stroke excitation of a body: how long a micro-collision lasts, and which part of the force rings it.
+//! Stroke excitation of a body: how long a micro-collision lasts, and which part of the force rings
+//! it.
 
 use crate::model::material::Material;
 use crate::model::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};
@@ -9,13 +10,15 @@ use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_dsp::micro_contact::Probe;
 
 /// A sliding contact excites a body only above this share of its lowest mode. Below it the modes
-/// follow the force like springs: a rumble that neither the recording nor a real radiating body has,
-/// and that would bury the ringing under the grating's own fundamental.
+/// follow the force like springs: a rumble that neither the recording nor a real radiating body
+/// has, and that would bury the ringing under the grating's own fundamental.
 const FORCE_HIGH_PASS_SHARE: f64 = 0.5;
-/// Bounds of that cutoff, Hz; the upper one keeps a body of high modes audible when it is scraped slowly.
+/// Bounds of that cutoff, Hz; the upper one keeps a body of high modes audible when it is scraped
+/// slowly.
 const FORCE_HIGH_PASS_HZ: (f64, f64) = (20.0, 500.0);
-/// Cutoff of the high-pass of pulses, Hz. Collisions and grains only ever push, and a push that lasts is no sound: without
-/// it a rough stroke holds a fifth of its energy below 40 Hz. A third octave at 63 Hz loses 0.04 dB.
+/// Cutoff of the high-pass of pulses, Hz. Collisions and grains only ever push, and a push that
+/// lasts is no sound: without it a rough stroke holds a fifth of its energy below 40 Hz. A third
+/// octave at 63 Hz loses 0.04 dB.
 const PULSE_HIGH_PASS_HZ: f64 = 20.0;
 
 /// Designed on the game thread whenever a surface or its body is set.
@@ -23,7 +26,7 @@ const PULSE_HIGH_PASS_HZ: f64 = 20.0;
 pub(crate) struct Stroking {
     /// The exciter of a micro-collision against the body's material.
     pub(crate) hertz: HertzContact,
-    /// What a probe presses on.
+    /// Ground that a probe presses on.
     pub(crate) ground: Ground,
     /// Keeps the part of the contact force that the body answers.
     pub(crate) force_high_pass: Butterworth,
@@ -51,7 +54,8 @@ impl Stroking {
     }
 }
 
-/// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).
+/// Rebound over closing speed of the pad as a damped oscillator on the contact spring:
+/// e^(−πζ/√(1−ζ²)).
 pub(crate) fn restitution(probe: &Probe) -> f64 {
     let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
     let damping = (probe.pad_damping_n_s_m / critical).min(0.999);

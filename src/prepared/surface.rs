@@ -9,14 +9,14 @@ use asperity_texture::height_field::Properties;
 /// A surface as the audio half owns it: everything a contact needs, designed beforehand.
 pub(crate) struct SurfaceSlot {
     pub(crate) surface: Surface,
-    /// Of its source.
+    /// Properties of its source.
     pub(crate) properties: Properties,
     pub(crate) trajectory: TrajectoryDesign,
     /// Through its body, where nothing wraps.
     pub(crate) place_trajectory: TrajectoryDesign,
-    /// How strokes excite the body below.
+    /// Excitation of the body below by strokes.
     pub(crate) stroking: Stroking,
-    /// How the micro-noise lies on it.
+    /// Layout of the micro-noise on it.
     pub(crate) overlay: Overlay,
     /// After how many metres it is the same again, ∞ for never.
     pub(crate) period_m: [f64; 2],

@@ -1,4 +1,5 @@
-//! Bodies whose shapes are closed forms: a free bar, a plate held at its edges, a sphere that swells.
+//! Bodies whose shapes are closed forms: a free bar, a plate held at its edges, a sphere that
+//! swells.
 
 use asperity::{Mode, ModeShapes};
 use std::f64::consts::PI;
@@ -79,7 +80,8 @@ pub fn plate_of(cells: [usize; 2]) -> ModeShapes {
     shapes(sheet(PLATE_M, cells), 30, |_| [0.0, 0.0, 1.0], plate_shape)
 }
 
-/// Modes of a thin plate whose first one is at `lowest_hz`, decaying alike; version 2 text of a modes file.
+/// Modes of a thin plate whose first one is at `lowest_hz`, decaying alike; version 2 text of a
+/// modes file.
 pub fn modes_file(shapes: &ModeShapes, hz: impl Fn(usize) -> f64, decay_per_s: f64) -> String {
     let mode = |m: usize| Mode {
         frequency_hz: hz(m),

@@ -1,4 +1,5 @@
-//! An allocator that counts what a thread does to the heap. A test binary that includes it runs on it.
+//! An allocator that counts what a thread does to the heap. A test binary that includes it runs on
+//! it.
 #![allow(dead_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -1,4 +1,5 @@
-//! A free exploration of a surface: one stroke along u and one along v at random places, speeds and forces; and what an observer knows of it.
+//! A free exploration of a surface: one stroke along u and one along v at random places, speeds and
+//! forces; and what an observer knows of it.
 #![allow(dead_code)]
 
 use super::{SIDE_M, render};
@@ -69,7 +70,8 @@ impl Exploration {
     }
 }
 
-/// What is felt, and what is heard, of a surface. `pascals`: of a full-scale sample. With the place of the hand where the task gives it.
+/// What is felt, and what is heard, of a surface. `pascals`: of a full-scale sample. With the place
+/// of the hand where the task gives it.
 pub fn percepts(config: Config, surface: Surface, seed: u64, pascals: f64, placed: bool) -> [Percept; 2] {
     let exploration = Exploration::new(seed);
     let config = Config { seed, ..config };

@@ -1,8 +1,8 @@
 //! The judge of the seven materials: strokes, what is felt of them, the nearest centroid.
 //!
-//! Third-octave spectra of the haptic channel from 6 Hz (what skin feels; below that it is position) to
-//! 1 kHz. Nothing below 0.1 µm counts: a finger does not notice it. The paper's materials are solid noise
-//! alone, so the micro-relief is off.
+//! Third-octave spectra of the haptic channel from 6 Hz (what skin feels; below that it is
+//! position) to 1 kHz. Nothing below 0.1 µm counts: a finger does not notice it. The paper's
+//! materials are solid noise alone, so the micro-relief is off.
 #![allow(dead_code)]
 
 use crate::common::{render, si_config};

@@ -1,12 +1,14 @@
 //! Random scenes at the ends of what is accepted: probe, rate, surface, force, speed, reports.
 //!
-//! A scene passes if everything it gives is finite and no contact force is higher than physics explains. With the
-//! pressed force F, the masses m and the ground's own acceleration a (second difference of the heights that the
-//! contact was given, at the contact's own rate), that is 10 F where m a < F, and 3 (F + m a) elsewhere.
+//! A scene passes if everything it gives is finite and no contact force is higher than physics
+//! explains. With the pressed force F, the masses m and the ground's own acceleration a (second
+//! difference of the heights that the contact was given, at the contact's own rate), that is 10 F
+//! where m a < F, and 3 (F + m a) elsewhere.
 //!
-//! That leaves out what comes down again: a mass that left the ground lands at some speed v on the spring k of the
-//! contact, F = v √(k m), however long ago the ground threw it. A pad of 1 kg that 1 mN presses on 1e9 N/m does so
-//! with rights, so that each scene has a second figure: the same with that landing added.
+//! That leaves out what comes down again: a mass that left the ground lands at some speed v on the
+//! spring k of the contact, F = v √(k m), however long ago the ground threw it. A pad of 1 kg that
+//! 1 mN presses on 1e9 N/m does so with rights, so that each scene has a second figure: the same
+//! with that landing added.
 #![allow(dead_code)]
 
 use asperity::limits;
@@ -116,7 +118,8 @@ impl Tap for Hardest {
             }
             self.pressed_n = self.pressed_n.max(row.normal_force_n);
             self.contact_n = self.contact_n.max(row.contact_force_n);
-            // A surface whose sound is of the force alone tells no onsets: then by how fast the last two rows came closer.
+            // A surface whose sound is of the force alone tells no onsets: then by how fast the
+            // last two rows came closer.
             let [two_ago_m, last_m] = self.depths_m;
             let falling_m_s = if last_m < 0.0 { (last_m - two_ago_m) * self.rate_hz } else { 0.0 };
             let closing_m_s = row.onset.map_or(falling_m_s, |onset| onset.closing_m_s);
@@ -162,7 +165,8 @@ pub fn outcome(seed: u64) -> Outcome {
         finger_mass_kg: end_of(rng, limits::probe::FINGER_MASS_KG),
         contact_stiffness_n_m: end_of(rng, limits::probe::CONTACT_STIFFNESS_N_M),
         leash_m: end_of(rng, limits::probe::LEASH_M),
-        // The stiffness is drawn over its whole range; the figure of a landing is that of a fixed one.
+        // The stiffness is drawn over its whole range; the figure of a landing is that of a fixed
+        // one.
         tip_radius_m: 0.0,
         ridge_m: 0.0,
         force_exponent: 0.0,

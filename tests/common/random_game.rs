@@ -1,6 +1,6 @@
-//! Randomised events of every kind, hostile numbers, surfaces and bodies swapped and removed while they
-//! sound: what the tests of the audio half live through, under the counting allocator and under the
-//! real-time sanitizer.
+//! Randomised events of every kind, hostile numbers, surfaces and bodies swapped and removed while
+//! they sound: what the tests of the audio half live through, under the counting allocator and
+//! under the real-time sanitizer.
 
 use crate::common::{bar, grating, plate};
 use asperity::live::ports::{Feed, Force, ForcePort, Pcm, PcmPort};
@@ -30,7 +30,8 @@ pub struct RandomGame {
 }
 
 impl RandomGame {
-    /// A game that is the same for the same seed, with fewer voices than fingers and a short time-out.
+    /// A game that is the same for the same seed, with fewer voices than fingers and a short
+    /// time-out.
     pub fn new(seed: u64) -> (Self, Renderer) {
         Self::with(seed, Config::default())
     }

@@ -1,4 +1,5 @@
-//! Scenes of one probe on one ground whose levels nobody wrote, and a slanting stroke over another place than the reference strokes.
+//! Scenes of one probe on one ground whose levels nobody wrote, and a slanting stroke over another
+//! place than the reference strokes.
 #![allow(dead_code)]
 
 use crate::common::SIDE_M;
@@ -51,7 +52,8 @@ pub fn rendered(engine: Engine, log: &ContactLog, block: usize) -> Render {
     offline::render(scene, renderer, log, &names, &options).unwrap()
 }
 
-/// Micro-relief of these roughnesses, granite, and a rock and a fabric of the corpus, this high: names and keys.
+/// Micro-relief of these roughnesses, granite, and a rock and a fabric of the corpus, this high:
+/// names and keys.
 pub fn grounds(roughnesses: &[f64], relief_m: f64, files: &mut Memory) -> Vec<(String, String)> {
     let mut grounds: Vec<(String, String)> =
         roughnesses.iter().map(|r| (format!("R {r}"), format!("roughness = {r}"))).collect();

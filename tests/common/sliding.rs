@@ -63,7 +63,8 @@ impl Stroke {
         }
     }
 
-    /// Largest step of what was rendered from `from_s` on, in dB of the signal's peak: haptics, audio.
+    /// Largest step of what was rendered from `from_s` on, in dB of the signal's peak: haptics,
+    /// audio.
     pub fn steps_db(&self, from_s: f64) -> [f64; 2] {
         let from = (from_s * 44_100.0) as usize;
         [&self.haptic, &self.audio].map(|x| 20.0 * (largest_step(&x[from..]) / peak(&x[from..])).log10())

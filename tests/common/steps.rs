@@ -3,8 +3,9 @@
 
 /// Height of the largest sudden step in `x`, in the units of `x`.
 ///
-/// The fourth difference of a step of height s peaks at 3 s, while a sine at frequency f only reaches
-/// (2π f / rate)⁴ of its amplitude: −74 dB at 800 Hz and 44.1 kHz. What is smooth does not count.
+/// The fourth difference of a step of height s peaks at 3 s, while a sine at frequency f only
+/// reaches (2π f / rate)⁴ of its amplitude: −74 dB at 800 Hz and 44.1 kHz. What is smooth does not
+/// count.
 pub fn largest_step(x: &[f32]) -> f64 {
     let difference = |w: &[f32]| {
         let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|i| f64::from(w[i]));

@@ -73,7 +73,8 @@ fn a_tip_above_the_sand_feels_nothing_and_one_that_dips_in_feels_its_way_down() 
     assert!((most / law.force_n(0.004) - 1.0).abs() < 0.03, "{most} N");
 }
 
-/// Depths as games report them: a tip that comes down steeply at a random instant, wanders, leaves, and comes again.
+/// Depths as games report them: a tip that comes down steeply at a random instant, wanders, leaves,
+/// and comes again.
 fn depths_of_a_game(rng: &mut Rng, seconds: f64) -> impl Fn(f64) -> f64 + use<> {
     let strokes: Vec<[f64; 4]> = (0..(4.0 * seconds) as usize)
         .map(|_| {
@@ -111,7 +112,8 @@ fn rows_of_steep_landings_that_a_game_reports_keep_to_the_cap_and_to_0_n_in_the_
             assert!(size_n <= cap_n * (1.0 + 1e-12), "game {game}, tick {}: {size_n} of {cap_n} N", row.tick);
             most_n = most_n.max(size_n / cap_n);
             let t = row.tick as f64 / rows_hz;
-            // A report counts from the sample on in which it falls, and heaps stand higher than the untouched sand.
+            // A report counts from the sample on in which it falls, and heaps stand higher than the
+            // untouched sand.
             if depth_m(report_s(t)).max(depth_m(report_s(t + 1.0 / 44_100.0))) > -0.04 {
                 landings += usize::from(above_s > f64::NEG_INFINITY);
                 above_s = f64::NEG_INFINITY;
@@ -129,7 +131,8 @@ fn rows_of_steep_landings_that_a_game_reports_keep_to_the_cap_and_to_0_n_in_the_
     assert!(landings > 100 && in_the_air > 10_000 && most_n > 0.999);
 }
 
-/// A sensor that now and then tells what it should not: no number, infinity, a jump, the last value again.
+/// A sensor that now and then tells what it should not: no number, infinity, a jump, the last value
+/// again.
 fn seen_m(depth_m: f64, last_m: f64, rng: &mut Rng) -> f64 {
     match (200.0 * rng.uniform()) as u32 {
         0 => f64::NAN,
@@ -215,7 +218,8 @@ fn twenty_loops_that_nobody_prepared_get_finite_forces_within_the_cap_and_end_wi
         );
         assert!(refused > 0 && rows.len() as f64 > 0.9 * rate_hz && most_n.is_finite());
         assert!(!is_sand || most_n <= cap_n * (1.0 + 1e-12), "case {case}: {most_n} of {cap_n} N");
-        // A hand of 2 N falls at 2 N / b at most and stands at 2 N / k; what glitches throw away dies down.
+        // A hand of 2 N falls at 2 N / b at most and stands at 2 N / k; what glitches throw away
+        // dies down.
         assert!(x.abs() < 0.01 + 8.0 / stiffness_n_m + cap_n / damping_n_s_m * 0.05, "case {case}: {x} m");
         assert!(v.abs() <= cap_n / damping_n_s_m, "case {case}: {v} m/s");
     }

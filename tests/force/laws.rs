@@ -114,7 +114,8 @@ fn a_sphere_and_a_cube_are_cut_from_one_block_by_the_place_that_a_contact_tells(
     let sphere = || Surface::new(granite(), SIDE_M, SIDE_M).unwrap().micro_relief_m(0.0);
     let (mut worst, mut range) = (0.0f64, [f64::INFINITY, f64::NEG_INFINITY]);
     for k in 0..12 {
-        // Points of a sphere of 4 cm about the cube's corner that lie on the cube's faces z = 0 and y = 0.
+        // Points of a sphere of 4 cm about the cube's corner that lie on the cube's faces z = 0 and
+        // y = 0.
         let angle = 0.1 + 0.5 * f64::from(k);
         let (s, c) = angle.sin_cos();
         for (point, frame) in [

@@ -40,7 +40,8 @@ fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold
     assert!(stalled.lost() > 2000 && late[..] == told[told.len() - late.len()..]);
 }
 
-/// Between two landings of one contact, 10 N and then 1 N, the first of which still fades: what a row tells is the second.
+/// Between two landings of one contact, 10 N and then 1 N, the first of which still fades: what a
+/// row tells is the second.
 #[test]
 fn a_contact_that_lifts_and_lands_elsewhere_at_once_is_felt_where_it_is_and_not_where_it_fades() {
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();

@@ -35,7 +35,8 @@ impl Tap for Felt {
     }
 }
 
-/// Reports at `hz` of a stroke, felt at `rows_hz`; without a `material` the surface is soft or sand.
+/// Reports at `hz` of a stroke, felt at `rows_hz`; without a `material` the surface is soft or
+/// sand.
 pub struct Stroke {
     pub sample_rate_hz: f64,
     pub rows_hz: f64,

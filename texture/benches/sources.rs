@@ -1,5 +1,5 @@
-//! Surfaces that are not maps: ns per sample of a block is the printed time of one element; a frame of
-//! sand and settling are whole.
+//! Surfaces that are not maps: ns per sample of a block is the printed time of one element; a frame
+//! of sand and settling are whole.
 
 #[path = "../tests/common/naive_sand.rs"]
 mod naive_sand;
@@ -123,8 +123,8 @@ fn sand_frame(c: &mut Criterion) {
     });
 }
 
-/// A random field of 256 x 256 cells until nothing slides; the example `settling` has the document's pass
-/// beside it.
+/// A random field of 256 x 256 cells until nothing slides; the example `settling` has the
+/// document's pass beside it.
 fn settling(c: &mut Criterion) {
     let mut group = c.benchmark_group("sand, settling of 256 x 256 cells");
     group.sample_size(10);

@@ -1,7 +1,8 @@
-//! Prints the measured tables of the offline analysis; `dimension`, `cubes`, `lattice`, `framed`, `unseen`, `controls` or `groups`
-//! prints one, names of picture files print what is found in them, and `reliefs` writes the six reliefs of the thesis (§8.3) as
-//! height maps into the working directory, for `asperity texture compare`.
-//! `cargo run --release -p asperity-texture --features offline --example analysis_table`
+//! Prints the measured tables of the offline analysis; `dimension`, `cubes`, `lattice`, `framed`,
+//! `unseen`, `controls` or `groups` prints one, names of picture files print what is found in them,
+//! and `reliefs` writes the six reliefs of the thesis (§8.3) as height maps into the working
+//! directory, for `asperity texture compare`. `cargo run --release -p asperity-texture --features
+//! offline --example analysis_table`
 
 #[path = "../tests/support/exact_brownian.rs"]
 mod exact_brownian;
@@ -52,7 +53,8 @@ fn main() {
     }
 }
 
-/// Table 6.1 of the thesis beside ours; its pictures are not to be had, only their dimensions and three sizes.
+/// Table 6.1 of the thesis beside ours; its pictures are not to be had, only their dimensions and
+/// three sizes.
 fn cubes() {
     const PAIRS: u64 = 5;
     let table = [
@@ -178,7 +180,8 @@ fn framed_squares() {
     thesis.print("thesis");
 }
 
-/// Seeds that nothing was tuned on: frames and random motifs of any rotation with 5 to 8 repeats a side, clean and under noise.
+/// Seeds that nothing was tuned on: frames and random motifs of any rotation with 5 to 8 repeats a
+/// side, clean and under noise.
 fn unseen() {
     println!("\nSeeds that nothing was tuned on");
     let mut drawn = Tally::default();

@@ -1,6 +1,6 @@
-//! Writes five textures of 256 × 256 texels for document 002's ABX table, the reference of the metamers first:
-//! `cargo run --release -p asperity-texture --features offline --example five_textures -- DIR`, then
-//! `asperity texture compare DIR/*.png --metamers`.
+//! Writes five textures of 256 × 256 texels for document 002's ABX table, the reference of the
+//! metamers first: `cargo run --release -p asperity-texture --features offline --example
+//! five_textures -- DIR`, then `asperity texture compare DIR/*.png --metamers`.
 
 #[path = "../tests/surfaces/mod.rs"]
 mod surfaces;

@@ -1,9 +1,9 @@
 //! Recognition of the seven materials by heights and by forces, on strokes and pieces that
 //! nothing was chosen by.
 //!
-//! The judge is the one of the test `seven_materials`, unchanged. Eight sets of seeds, written down before
-//! the first run; in each the judge learns 40 strokes a material on one piece of it and is asked about 40
-//! others on the same piece, and in another round on a piece it has never met.
+//! The judge is the one of the test `seven_materials`, unchanged. Eight sets of seeds, written down
+//! before the first run; in each the judge learns 40 strokes a material on one piece of it and is
+//! asked about 40 others on the same piece, and in another round on a piece it has never met.
 
 #[path = "../tests/common/materials.rs"]
 mod materials;

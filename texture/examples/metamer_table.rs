@@ -1,5 +1,6 @@
-//! A table of metamers of maps: `cargo run --release -p asperity-texture --features offline --example metamer_table --
-//! ORIGINAL REFERENCE [ORIGINAL REFERENCE …]` prints a row a pair, distances as in `asperity texture metamer`.
+//! A table of metamers of maps: `cargo run --release -p asperity-texture --features offline
+//! --example metamer_table -- ORIGINAL REFERENCE [ORIGINAL REFERENCE …]` prints a row a pair,
+//! distances as in `asperity texture metamer`.
 
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::metamer::{MetamerOptions, metamer};

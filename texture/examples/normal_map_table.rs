@@ -1,7 +1,9 @@
-//! Prints how well heights come out of normal maps, as they are and as people have them, against the displacement maps of the same sets.
-//! `cargo run --release -p asperity-texture --features offline --example normal_map_table -- FOLDER…`, folders of files named
-//! `…NormalGL.…` (or `…NormalDX.…`) and `…Displacement.…`. `--write DIR` also writes every row's red, green, blue and true heights, raw
-//! 32-bit floats one after the other, for `tests/independent/integrators.py`, which says what other integrators reach on the same input.
+//! Prints how well heights come out of normal maps, as they are and as people have them, against
+//! the displacement maps of the same sets. `cargo run --release -p asperity-texture --features
+//! offline --example normal_map_table -- FOLDER…`, folders of files named `…NormalGL.…` (or
+//! `…NormalDX.…`) and `…Displacement.…`. `--write DIR` also writes every row's red, green, blue and
+//! true heights, raw 32-bit floats one after the other, for `tests/independent/integrators.py`,
+//! which says what other integrators reach on the same input.
 //!
 //! The scale of a displacement map is not known: power is told of heights that are scaled to it.
 

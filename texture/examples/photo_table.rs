@@ -1,7 +1,9 @@
-//! A table of `from-photo` on pictures, one row each: `photo_table PHOTO[,DISPLACEMENT] … [--maps DIR]`.
+//! A table of `from-photo` on pictures, one row each: `photo_table PHOTO[,DISPLACEMENT] … [--maps
+//! DIR]`.
 //!
-//! With a displacement map (white is high) the correlation of the heights found and mapped, between 4 texels and a quarter of the
-//! picture, says whether they are the right way up. `--maps` writes displacement and roughness as 16-bit PNG.
+//! With a displacement map (white is high) the correlation of the heights found and mapped, between
+//! 4 texels and a quarter of the picture, says whether they are the right way up. `--maps` writes
+//! displacement and roughness as 16-bit PNG.
 
 use asperity_texture::dark_is_deep::high_pass;
 use asperity_texture::fft2::{Fft2, angular_frequency};

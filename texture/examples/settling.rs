@@ -1,5 +1,6 @@
-//! Prints how long a random field of sand takes to settle, against the document's pass over the whole
-//! grid repeated until nothing moves: the same fields, whole-number heights, criterion and optimisation.
+//! Prints how long a random field of sand takes to settle, against the document's pass over the
+//! whole grid repeated until nothing moves: the same fields, whole-number heights, criterion and
+//! optimisation.
 //!
 //! Arguments: edges in cells (256 and 1000 unless given).
 

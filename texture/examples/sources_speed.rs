@@ -1,4 +1,5 @@
-//! Prints nanoseconds per sample of every surface, of a map under a point and under a ball in soft ground, and milliseconds per frame of sand.
+//! Prints nanoseconds per sample of every surface, of a map under a point and under a ball in soft
+//! ground, and milliseconds per frame of sand.
 
 use asperity_texture::footprint::sample_under;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};

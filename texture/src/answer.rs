@@ -13,7 +13,8 @@
 //! same relief does not push twice |
 //! | cap | `cap_n`: what the device behind the surface gives at most |
 //!
-//! Most surfaces leave it empty: their slope is all they push with. It is made only where somebody looks at slopes.
+//! Most surfaces leave it empty: their slope is all they push with. It is made only where somebody
+//! looks at slopes.
 
 use crate::block::MAX_BLOCK;
 

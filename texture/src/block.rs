@@ -3,7 +3,8 @@
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
 
-/// The least and the greatest coordinates of some places, [[u, v], [u, v]]; what is no number counts for nothing.
+/// The least and the greatest coordinates of some places, [[u, v], [u, v]]; what is no number
+/// counts for nothing.
 #[must_use]
 pub fn bounds(position_m: &[[f64; 2]]) -> [[f64; 2]; 2] {
     let (mut low, mut high) = ([[f64::INFINITY; 2]; 4], [[f64::NEG_INFINITY; 2]; 4]);

@@ -1,12 +1,13 @@
 //! Images that do not tile, for tools that work in the Fourier domain.
 //!
-//! A Fourier transform takes an image to repeat; a photograph's opposite borders then meet in steps that
-//! leak into every frequency. The image is split into a periodic component p and a smooth one s,
+//! A Fourier transform takes an image to repeat; a photograph's opposite borders then meet in steps
+//! that leak into every frequency. The image is split into a periodic component p and a smooth one
+//! s,
 //! ```text
 //! image = p + s        Δs = (jumps across the borders)        mean s = 0
 //! ```
-//! p has the detail of the image and tiles; s is harmonic inside and takes the steps. Source: L. Moisan,
-//! "Periodic plus smooth image decomposition", J. Math. Imaging Vis. 39, 2011.
+//! p has the detail of the image and tiles; s is harmonic inside and takes the steps. Source: L.
+//! Moisan, "Periodic plus smooth image decomposition", J. Math. Imaging Vis. 39, 2011.
 
 use crate::fft2::{RealFft2, Workspace, angular_frequency};
 use crate::raster::Raster;
@@ -16,15 +17,16 @@ use asperity_fft::num_complex::Complex64;
 /// Ratio of the mean step across a seam to the mean step inside up to which an image tiles. Source:
 /// ours; tileable maps of the corpus stay below 1.3, photographs are above 2.
 pub const SEAM_LIMIT: f64 = 1.6;
-/// Part of the step across a seam within which two neighbours inside must equal the two at the seam for it to be one of the
-/// pattern's own edges. Source: ours; strips of photographs differ by the step itself.
+/// Part of the step across a seam within which two neighbours inside must equal the two at the seam
+/// for it to be one of the pattern's own edges. Source: ours; strips of photographs differ by the
+/// step itself.
 const SAME_STRIP: f64 = 0.25;
 
 /// Decision whether an image tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Borders {
-    /// Look at the seams: [`seam_ratio`] against [`SEAM_LIMIT`], unless the same step is met inside, too: the edge of a
-    /// tile may lie on the border.
+    /// Look at the seams: [`seam_ratio`] against [`SEAM_LIMIT`], unless the same step is met
+    /// inside, too: the edge of a tile may lie on the border.
     #[default]
     Detect,
     /// It tiles.
@@ -46,7 +48,8 @@ impl Borders {
 }
 
 /// Mean absolute step across the borders over that between neighbours one texel further inside, the
-/// larger of the two directions. About 1 for an image that tiles; 1 for one that has no steps at all.
+/// larger of the two directions. About 1 for an image that tiles; 1 for one that has no steps at
+/// all.
 #[must_use]
 pub fn seam_ratio(image: &Raster) -> f64 {
     let (w, h) = (image.width, image.height);
@@ -73,7 +76,8 @@ fn has_ordinary_seams(image: &Raster) -> bool {
     w >= 4 && h >= 4 && seam_is_met_inside(image) && seam_is_met_inside(&turned())
 }
 
-/// Tests whether two neighbouring rows inside are those that meet at the seam, the last one and the first one.
+/// Tests whether two neighbouring rows inside are those that meet at the seam, the last one and the
+/// first one.
 fn seam_is_met_inside(image: &Raster) -> bool {
     let last = image.height - 1;
     let distance = |a: usize, b: usize| -> f64 {
@@ -122,7 +126,8 @@ fn smooth_component(image: &Raster) -> Raster {
     let mut planner = FftPlanner::new();
     let down = transformed((0..w).map(|x| image.at(x, 0) - image.at(x, h - 1)), &mut planner);
     let across = transformed((0..h).map(|y| image.at(0, y) - image.at(w - 1, y)), &mut planner);
-    // A step stands in the first row (column) and, negative, in the last: 1 − e^(iω) of its spectrum.
+    // A step stands in the first row (column) and, negative, in the last: 1 − e^(iω) of its
+    // spectrum.
     let pairs = |n: usize| {
         let pair = |k| Complex64::new(1.0, 0.0) - Complex64::cis(angular_frequency(k, n));
         (0..n).map(pair).collect::<Vec<_>>()

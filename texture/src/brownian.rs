@@ -11,12 +11,13 @@
 //! | [`Method::Midpoint`] | random midpoint displacement, the document's construction, with its means and variances corrected; see [`midpoint`] |
 //!
 //! Source: chapter 6 of the texture-analysis thesis (definitions 6.7 and 6.8, theorems 6.1 and 6.2,
-//! §6.3.2). What we changed: the default is exact, because midpoint displacement follows the law only between a point
-//! and its neighbours; its dimension is right all the same. Measured dimensions are in the tests.
+//! §6.3.2). What we changed: the default is exact, because midpoint displacement follows the law
+//! only between a point and its neighbours; its dimension is right all the same. Measured
+//! dimensions are in the tests.
 //!
-//! Generators run when a surface is made and use the heap. What they make is a [`Raster`] of heights
-//! to be read as a height map: wrap it with *repeat* when periodic, with *mirror* when not (an open
-//! surface has a step where its ends meet).
+//! Generators run when a surface is made and use the heap. What they make is a [`Raster`] of
+//! heights to be read as a height map: wrap it with *repeat* when periodic, with *mirror* when not
+//! (an open surface has a step where its ends meet).
 
 mod fourier;
 pub mod midpoint;
@@ -30,8 +31,8 @@ use fourier::{Complex, forward_2d, forward_lines};
 
 /// Largest edge of a periodic surface, samples.
 pub const MAX_PERIODIC_SIZE: usize = 4096;
-/// Largest edge of an open surface, samples: its embedding is 2.9 (H ≤ 0.75) or 5.7 times as wide and
-/// takes 0.13 or 0.54 GB while it is made.
+/// Largest edge of an open surface, samples: its embedding is 2.9 (H ≤ 0.75) or 5.7 times as wide
+/// and takes 0.13 or 0.54 GB while it is made.
 pub const MAX_OPEN_SIZE: usize = 1024;
 /// Longest path, samples.
 pub const MAX_PATH: usize = 1 << 22;
@@ -126,8 +127,8 @@ fn scaled(mut values: Vec<f64>, rms: f64) -> Vec<f64> {
     values
 }
 
-/// Turns eigenvalues of a circulant covariance into the spectrum of a random field with it. Rounding
-/// leaves eigenvalues of −1e-13 of the largest where they are 0.
+/// Turns eigenvalues of a circulant covariance into the spectrum of a random field with it.
+/// Rounding leaves eigenvalues of −1e-13 of the largest where they are 0.
 fn colour(eigenvalues: &mut [Complex], rng: &mut Rng) {
     let n = eigenvalues.len() as f64;
     for value in eigenvalues {
@@ -163,7 +164,8 @@ fn sine_squared(i: usize, n: usize) -> f64 {
     (core::f64::consts::PI * i as f64 / n as f64).sin().powi(2)
 }
 
-/// Davies–Harte: fractional Gaussian noise on a circle of 2n increments, of which n − 1 are added up.
+/// Davies–Harte: fractional Gaussian noise on a circle of 2n increments, of which n − 1 are added
+/// up.
 fn line(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let power = |k: f64| k.abs().powf(2.0 * hurst);
     let covariance = |k: f64| 0.5 * (power(k + 1.0) - 2.0 * power(k) + power(k - 1.0));

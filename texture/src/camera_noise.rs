@@ -14,14 +14,16 @@
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
-//! Uneven light is no noise and no relief: octaves are those of the picture without it, which comes back where anything
-//! is left. Where each octave has noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised, reduced, recompressed) and
-//! a faint surface are the same picture, and it is flat; so it is where less than [`NOTHING`] is left of 4–128 texels.
+//! Uneven light is no noise and no relief: octaves are those of the picture without it, which comes
+//! back where anything is left. Where each octave has noise's even spread of power and less than
+//! [`FAINT`], noise that somebody blurred (denoised, reduced, recompressed) and a faint surface are
+//! the same picture, and it is flat; so it is where less than [`NOTHING`] is left of 4–128 texels.
 //!
-//! Power is subtracted, not filtered by least squares (Wiener), so that what stays has the strength it had: levels are compared
-//! by power. Source: spectral subtraction (S. F. Boll, IEEE ASSP 27, 1979) over rings instead of frames; limits ours.
-//! Measured: a wall of 200 ± 1 of 255 keeps 1 % of its noise, one of 2 levels of noise saved as JPEG at quality 85–95 a tenth; a
-//! photograph of gravel at 3 % of its contrast keeps 97 %.
+//! Power is subtracted, not filtered by least squares (Wiener), so that what stays has the strength
+//! it had: levels are compared by power. Source: spectral subtraction (S. F. Boll, IEEE ASSP 27,
+//! 1979) over rings instead of frames; limits ours. Measured: a wall of 200 ± 1 of 255 keeps 1 % of
+//! its noise, one of 2 levels of noise saved as JPEG at quality 85–95 a tenth; a photograph of
+//! gravel at 3 % of its contrast keeps 97 %.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::raster::Raster;
@@ -29,7 +31,8 @@ use crate::symmetry::detrended;
 use crate::waves::Waves;
 use std::f64::consts::{PI, TAU};
 
-/// Rms of the strongest noise that is taken for a camera's, of white: five levels of 255. Assumed: a telephone indoors.
+/// Rms of the strongest noise that is taken for a camera's, of white: five levels of 255. Assumed:
+/// a telephone indoors.
 pub const MOST_NOISE: f64 = 0.02;
 /// Rms of the weakest, of white: 8-bit rounding, 1/√12 of a level.
 pub const LEAST_NOISE: f64 = 0.288_7 / 255.0;
@@ -39,22 +42,27 @@ const CORNER: f64 = 0.4;
 const OCTAVES: usize = 5;
 /// Waves that an octave needs to be judged by.
 const FEWEST_WAVES: f64 = 40.0;
-/// Most over least power of octaves that are level for certain, and of those that are not. Walls under a mosaic, sharpened, reduced or as JPEG
-/// 1.0–1.5; gravel, the most level of real grounds looked at, 1.85.
+/// Most over least power of octaves that are level for certain, and of those that are not. Walls
+/// under a mosaic, sharpened, reduced or as JPEG 1.0–1.5; gravel, the most level of real grounds
+/// looked at, 1.85.
 const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
-/// Factor over the mean of level octaves that is taken off: a mosaic and JPEG leave them uneven by a fifth.
+/// Factor over the mean of level octaves that is taken off: a mosaic and JPEG leave them uneven by
+/// a fifth.
 const MARGIN: f64 = 1.3;
-/// Rms of the strongest octaves that are taken for noise because they are level, of white: eight levels of 255. Source: ours; a wall under six
-/// levels of noise before its mosaic has 7.4.
+/// Rms of the strongest octaves that are taken for noise because they are level, of white: eight
+/// levels of 255. Source: ours; a wall under six levels of noise before its mosaic has 7.4.
 pub const MOST_LEVEL: f64 = 8.0 / 255.0;
-/// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is below half a divisor, and steps of its
-/// block means are white noise of 1/√12 of it. Source: ours, above what walls of quality 76–92 keep (0.35–0.7).
+/// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is
+/// below half a divisor, and steps of its block means are white noise of 1/√12 of it. Source: ours,
+/// above what walls of quality 76–92 keep (0.35–0.7).
 const HIDDEN: f64 = 0.8;
-/// Rms of an octave that cannot be told from blurred noise, of white: 0.4 of a level. Source: ours; denoised, reduced and recompressed walls have up to
-/// 0.37, bricks at a twentieth of their contrast 0.43.
+/// Rms of an octave that cannot be told from blurred noise, of white: 0.4 of a level. Source: ours;
+/// denoised, reduced and recompressed walls have up to 0.37, bricks at a twentieth of their
+/// contrast 0.43.
 pub const FAINT: f64 = 0.4 / 255.0;
-/// Mean over logarithmic mean of an octave's power up to which it is noise's: 1 of noise, 1.2 where JPEG thinned it, 3 and more of patterns.
+/// Mean over logarithmic mean of an octave's power up to which it is noise's: 1 of noise, 1.2 where
+/// JPEG thinned it, 3 and more of patterns.
 const EVEN: f64 = 1.7;
 /// Rms of all octaves together that is nothing, of white: a fifth of a level.
 pub const NOTHING: f64 = 0.2 / 255.0;
@@ -150,7 +158,8 @@ impl Rings {
 
 /// Estimate of the noise from octaves.
 struct Floor {
-    /// Power of the corner, of the plateau, of level octaves or of what JPEG hides, whichever is most.
+    /// Power of the corner, of the plateau, of level octaves or of what JPEG hides, whichever is
+    /// most.
     noise: f64,
     /// Power to be taken off.
     taken: f64,
@@ -186,7 +195,8 @@ fn floor(waves: &Waves, texels: f64, hidden: f64) -> Floor {
     }
 }
 
-/// Tests whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven than noise.
+/// Tests whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven
+/// than noise.
 fn are_faint(octaves: &[Mean], texels: f64) -> bool {
     let seen = || octaves.iter().filter(|octave| octave.count >= FEWEST_WAVES);
     let is_faint = |octave: &Mean| {
@@ -195,7 +205,8 @@ fn are_faint(octaves: &[Mean], texels: f64) -> bool {
     seen().count() >= 3 && seen().all(is_faint)
 }
 
-/// The most power of the octaves from the first on that are no stronger than what JPEG hides, if there are three of them.
+/// The most power of the octaves from the first on that are no stronger than what JPEG hides, if
+/// there are three of them.
 fn of_hidden_octaves(octaves: &[Mean], hidden: f64) -> f64 {
     let are_hidden =
         octaves.iter().take_while(|octave| octave.count >= FEWEST_WAVES && octave.of_noise() <= hidden);
@@ -242,8 +253,8 @@ impl Mean {
         self.sum / self.count.max(1.0)
     }
 
-    /// The mean of noise that these are powers of, whatever a few strong waves among them have: powers of noise are
-    /// exponentially distributed, and E ln P = ln N − γ.
+    /// The mean of noise that these are powers of, whatever a few strong waves among them have:
+    /// powers of noise are exponentially distributed, and E ln P = ln N − γ.
     fn of_noise(&self) -> f64 {
         (self.logarithms / self.count.max(1.0) + EULER_GAMMA).exp()
     }
@@ -272,7 +283,8 @@ mod tests {
         assert!((left - 1.0).abs() < 0.05, "{left}");
     }
 
-    /// Open question: a sensor's mosaic blurs noise over a texel or two, so that neither its corner nor 4–8 texels tell how strong it is.
+    /// Open question: a sensor's mosaic blurs noise over a texel or two, so that neither its corner
+    /// nor 4–8 texels tell how strong it is.
     #[test]
     fn a_wall_loses_noise_that_a_mosaic_has_blurred() {
         let mut rng = Rng::new(7);
@@ -295,7 +307,7 @@ mod tests {
         assert!(kept > 0.6, "{kept}");
     }
 
-    /// What was open: a wall taken at night, blurred or as JPEG, was felt with 4 to 6 µm.
+    /// Open question of before: a wall taken at night, blurred or as JPEG, was felt with 4 to 6 µm.
     #[test]
     fn a_wall_loses_the_strong_noise_of_a_dark_room() {
         for (seed, levels) in [(21, 5.0), (22, 6.0), (32, 6.0)] {

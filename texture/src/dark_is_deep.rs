@@ -1,4 +1,5 @@
-//! Brightness as height, where light comes from everywhere or from the viewer: dark is deep, and steep as it has contrast.
+//! Brightness as height, where light comes from everywhere or from the viewer: dark is deep, and
+//! steep as it has contrast.
 //!
 //! ```text
 //! Z(ω) = C(ω) · s(λ)/|ω|        s(λ) = √(λ₀/λ)        λ = 2π/|ω|
@@ -9,15 +10,18 @@
 //! | s | slope of a wave whose contrast is 1, falling with its length; s(λ₀) = 1, λ₀ = [`UNIT_SLOPE_PX`] |
 //! | Z | heights, texels; waves longer than a quarter of the image fade out |
 //!
-//! Under skylight brightness follows how much sky a place sees, which depends on slopes, not on heights (M. S. Langer and
-//! H. H. Bülthoff, Perception 29, 2000); a slanting light at 45° gives contrast = slope. So a wave of contrast c is taken
-//! for one of slope c, and **half the contrast is half the relief**. Contrast has no unit of length: what is told in metres follows
-//! from the texel, and how many times it is off for one camera and light a known sample tells.
+//! Under skylight brightness follows how much sky a place sees, which depends on slopes, not on
+//! heights (M. S. Langer and H. H. Bülthoff, Perception 29, 2000); a slanting light at 45° gives
+//! contrast = slope. So a wave of contrast c is taken for one of slope c, and **half the contrast
+//! is half the relief**. Contrast has no unit of length: what is told in metres follows from the
+//! texel, and how many times it is off for one camera and light a known sample tells.
 //!
-//! Measured on colour and normal maps of 93 public sets of other people: slope over contrast falls about as the root of the wave's length, and
-//! differs between sets by a factor of 2.5 either way (quartiles). λ₀ is fitted on 39 of them, picked by their names; in the other 54 the
-//! level of waves of 4 to 53 texels is then 0.6–2.8 dB too low in common. 15 earlier sets gave 2.8 texels, 4 dB less. The half
-//! power correlates better with the displacement (median 0.35 where there is any) than brightness itself.
+//! Measured on colour and normal maps of 93 public sets of other people: slope over contrast falls
+//! about as the root of the wave's length, and differs between sets by a factor of 2.5 either way
+//! (quartiles). λ₀ is fitted on 39 of them, picked by their names; in the other 54 the level of
+//! waves of 4 to 53 texels is then 0.6–2.8 dB too low in common. 15 earlier sets gave 2.8 texels, 4
+//! dB less. The half power correlates better with the displacement (median 0.35 where there is any)
+//! than brightness itself.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::raster::Raster;
@@ -41,8 +45,8 @@ pub fn dark_is_deep(image: &Raster) -> Raster {
     })
 }
 
-/// Share of a wave that stays: little when it is longer than a quarter of the shorter side. Slow changes of brightness are the
-/// light's, the lens' or dirt.
+/// Share of a wave that stays: little when it is longer than a quarter of the shorter side. Slow
+/// changes of brightness are the light's, the lens' or dirt.
 #[must_use]
 pub fn high_pass(frequency: f64, width: usize, height: usize) -> f64 {
     let broad = width.min(height) as f64 / 4.0 / TAU;

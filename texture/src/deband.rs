@@ -1,21 +1,23 @@
 //! Removes the terraces of a coarsely quantised map where it is gentle enough for them to be felt.
 //!
-//! 8 bits over 4 mm of relief are 15.7 µm a step. On a gentle ramp the steps leave 0.9 µm rms between 40
-//! and 1000 Hz under a finger at 0.1 m/s, nine times what can be felt; on a busy map nobody feels them.
+//! 8 bits over 4 mm of relief are 15.7 µm a step. On a gentle ramp the steps leave 0.9 µm rms
+//! between 40 and 1000 Hz under a finger at 0.1 m/s, nine times what can be felt; on a busy map
+//! nobody feels them.
 //!
-//! For each radius from 1 to 32 texels the map q is smoothed by B (three running means along rows and
-//! columns) with its bias taken back, b = 2 B q − B B q. Where b stays within half a step of q all over
-//! the kernel's neighbourhood, it is as good an explanation of the stored numbers as q itself, and
-//! takes its place; elsewhere the smaller radius (or q) stays. The largest radius that explains the
-//! numbers wins. A busy texture contradicts even the smallest and is left as it is. No texel moves by more than
-//! `TOLERANCE_STEPS` of a step.
+//! For each radius from 1 to 32 texels the map q is smoothed by B (three running means along rows
+//! and columns) with its bias taken back, b = 2 B q − B B q. Where b stays within half a step of q
+//! all over the kernel's neighbourhood, it is as good an explanation of the stored numbers as q
+//! itself, and takes its place; elsewhere the smaller radius (or q) stays. The largest radius that
+//! explains the numbers wins. A busy texture contradicts even the smallest and is left as it is. No
+//! texel moves by more than `TOLERANCE_STEPS` of a step.
 //!
-//! Steps are rounding only where there are many of them: a map of black and white, or of 4 or 16 even greys, shows edges (a
-//! constant at half height is within half a step of both levels of a grating, and would be glass). So a map keeps its steps where
-//! one is above [`COARSEST_STEP`] of white, or where its range has fewer than [`FEWEST_STEPS`] of them.
+//! Steps are rounding only where there are many of them: a map of black and white, or of 4 or 16
+//! even greys, shows edges (a constant at half height is within half a step of both levels of a
+//! grating, and would be glass). So a map keeps its steps where one is above [`COARSEST_STEP`] of
+//! white, or where its range has fewer than [`FEWEST_STEPS`] of them.
 //!
-//! Measured (`tests/height_map_figures.rs`): ramps of 3 to 40 texels a step fall from 2–4 µm to below 0.004 µm in
-//! the band.
+//! Measured (`tests/height_map_figures.rs`): ramps of 3 to 40 texels a step fall from 2–4 µm to
+//! below 0.004 µm in the band.
 
 use crate::raster::Raster;
 use crate::spline::transpose;
@@ -23,8 +25,8 @@ use crate::wrap::Wrap;
 
 /// Radii of the running means, texels.
 const RADII: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Largest distance of a smooth map from the stored number, steps: rounding, and a little for values that
-/// were rounded twice.
+/// Largest distance of a smooth map from the stored number, steps: rounding, and a little for
+/// values that were rounded twice.
 const TOLERANCE_STEPS: f64 = 0.52;
 /// Share of contradicting texels in a neighbourhood that rules a radius out.
 const RULED_OUT: f64 = 0.04;
@@ -35,8 +37,9 @@ pub const COARSEST_STEP: f64 = 1.0 / 63.0;
 /// Steps between the lowest and the highest level of a map from which they are taken for rounding.
 pub const FEWEST_STEPS: f64 = 4.0;
 
-/// The map without terraces. `step` is the distance of neighbouring levels, as a share of white; a map without steps, with steps
-/// finer than [`FINEST_STEP`], coarser than [`COARSEST_STEP`] or fewer than [`FEWEST_STEPS`] comes back unchanged.
+/// The map without terraces. `step` is the distance of neighbouring levels, as a share of white; a
+/// map without steps, with steps finer than [`FINEST_STEP`], coarser than [`COARSEST_STEP`] or
+/// fewer than [`FEWEST_STEPS`] comes back unchanged.
 #[must_use]
 pub fn deband(map: &Raster, step: f64, wrap: Wrap) -> Raster {
     let (low, high) = map.range();

@@ -1,5 +1,5 @@
-//! Distributions of numbers, counted in bins: the histograms of [`crate::histogram`] without sorting, for tools that match
-//! millions of numbers many times.
+//! Distributions of numbers, counted in bins: the histograms of [`crate::histogram`] without
+//! sorting, for tools that match millions of numbers many times.
 //!
 //! ```text
 //! bin(v) = ± 2^10 · log₂(1 + |v − c|/s)        log₂ piecewise linear between octaves
@@ -9,9 +9,10 @@
 //! |---|---|
 //! | c, s | `Grid`: the reference's mean and a tenth of its deviation |
 //!
-//! Bins are 10⁻⁴ of the deviation wide in the middle and a thousandth of the value outside, so that what lies between two
-//! edges may be taken as even. Where it may not, because many numbers of one bin have to be spread (a flat original), ranks
-//! decide as in [`crate::histogram`]. Against sorting (five maps of 1024 × 1024): an eighth of the time, distances equal to 1 %.
+//! Bins are 10⁻⁴ of the deviation wide in the middle and a thousandth of the value outside, so that
+//! what lies between two edges may be taken as even. Where it may not, because many numbers of one
+//! bin have to be spread (a flat original), ranks decide as in [`crate::histogram`]. Against
+//! sorting (five maps of 1024 × 1024): an eighth of the time, distances equal to 1 %.
 
 use crate::histogram::Matcher;
 
@@ -25,8 +26,8 @@ const BINS: usize = 2 * HALF;
 const UNIT: f64 = 0.1;
 /// Bits of the mantissa that lie within a bin.
 const WITHIN_BITS: u32 = f64::MANTISSA_DIGITS - 1 - OCTAVE_BITS;
-/// Distance over the deviation that may come from taking bins as even. Numbers that are matched to their own
-/// distribution stay below half of it.
+/// Distance over the deviation that may come from taking bins as even. Numbers that are matched to
+/// their own distribution stay below half of it.
 const MOST_UNRESOLVED: f64 = 2.5e-3;
 
 /// Places of the bins.
@@ -37,7 +38,8 @@ struct Grid {
 }
 
 impl Grid {
-    /// The bin of a value and how far behind the lower edge it lies, 0–1. What lies beyond the last bin counts to it.
+    /// The bin of a value and how far behind the lower edge it lies, 0–1. What lies beyond the last
+    /// bin counts to it.
     fn place(self, value: f64) -> (usize, f64) {
         const LAST: f64 = (1_u64 << OCTAVES) as f64 * (1.0 - f64::EPSILON);
         let x = (value - self.centre) / self.unit;
@@ -122,7 +124,8 @@ impl Distribution {
         sum
     }
 
-    /// Changes `values` so that they are spread like the numbers of this distribution and keep their order.
+    /// Changes `values` so that they are spread like the numbers of this distribution and keep
+    /// their order.
     pub fn give_to(&self, values: &mut [f64], matcher: &mut Matcher) {
         let theirs = Self::counted(values, self.grid);
         let (pieces, unresolved) = theirs.pieces(self);

@@ -1,8 +1,9 @@
 //! An exclusive cell: touched by its owner only, shared by reference all the same.
 //!
-//! An end of a ring must not be used from two threads at once. Behind a shared reference nobody can reach it here at all, so a thing
-//! that holds one may live where only shareable things may (a resource of an engine, a static). With an exclusive
-//! reference it is reached without a lock: [`Mutex::get_mut`] takes none.
+//! An end of a ring must not be used from two threads at once. Behind a shared reference nobody can
+//! reach it here at all, so a thing that holds one may live where only shareable things may (a
+//! resource of an engine, a static). With an exclusive reference it is reached without a lock:
+//! [`Mutex::get_mut`] takes none.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,13 +1,13 @@
 //! Changing a value at run time without a click.
 //!
 //! A change named at an absolute sample takes [`FADE_S`] to arrive: what the old and the new value
-//! give is mixed with the weight w(t) = 3t² − 2t³, t from 0 to 1. The steepest step of w is 1.5 over
-//! the number of samples, −66 dB at 32 kHz and above: no change, however large, puts a step above
-//! −60 dB of the signal into the output. A change that comes during a fade waits for its end; of
-//! several that wait, the last one counts.
+//! give is mixed with the weight w(t) = 3t² − 2t³, t from 0 to 1. The steepest step of w is 1.5
+//! over the number of samples, −66 dB at 32 kHz and above: no change, however large, puts a step
+//! above −60 dB of the signal into the output. A change that comes during a fade waits for its end;
+//! of several that wait, the last one counts.
 //!
-//! The mix at a sample is a function of the sample's absolute index and of the changes made before it,
-//! whatever blocks are asked for and by how many contacts.
+//! The mix at a sample is a function of the sample's absolute index and of the changes made before
+//! it, whatever blocks are asked for and by how many contacts.
 
 use crate::height_field::Setup;
 
@@ -28,7 +28,8 @@ pub struct Fade<T: Copy> {
 }
 
 impl<T: Copy> Fade<T> {
-    /// A settled value, for the rate of [`Setup::default`] until [`prepare`](Self::prepare) tells another.
+    /// A settled value, for the rate of [`Setup::default`] until [`prepare`](Self::prepare) tells
+    /// another.
     pub fn new(value: T) -> Self {
         let length = fade_samples(Setup::default().sample_rate_hz);
         Self { values: [value; 3], start: u64::MAX, next_start: u64::MAX, length }

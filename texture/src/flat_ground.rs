@@ -10,25 +10,33 @@
 //! | ground | the largest connected area as bright as L |
 //! | z | heights, texels: the solution that has no other lowest place, by fast marching |
 //!
-//! Frontal light tells how steep a place is and not which way. The literature integrates that from all summits, pits and saddles, whose
-//! kinds and heights have to be told (E. Rouy and A. Tourin, SIAM J. Numer. Anal. 29, 1992; R. Kimmel and A. M. Bruckstein, IJCV 16, 1995). Of a relief on a
-//! flat ground they need not be: the ground is one such place, and the largest. Whether the relief rises from the ground or is sunk into it light cannot say. Fast marching: J. A. Sethian, Proc. Natl. Acad. Sci. 93, 1996.
+//! Frontal light tells how steep a place is and not which way. The literature integrates that from
+//! all summits, pits and saddles, whose kinds and heights have to be told (E. Rouy and A. Tourin,
+//! SIAM J. Numer. Anal. 29, 1992; R. Kimmel and A. M. Bruckstein, IJCV 16, 1995). Of a relief on a
+//! flat ground they need not be: the ground is one such place, and the largest. Whether the relief
+//! rises from the ground or is sunk into it light cannot say. Fast marching: J. A. Sethian, Proc.
+//! Natl. Acad. Sci. 93, 1996.
 //!
-//! Measured against known heights, to two levels of 255 of noise: correlation 0.94–0.99 and relief within a tenth for the thesis' reliefs, 0.85–0.98 for
-//! bumps at random places, where brightness as height has −0.7–0.1. Tried and left: marching from all summits, told their places but no heights, has
-//! 0.73–1.00 and 0.27 for surfaces without a ground; from every flat place as a summit −0.8–0.1. An albedo that varies by 2 % hides every ground:
-//! nothing is found then, and [`above_flat_ground`] says so.
+//! Measured against known heights, to two levels of 255 of noise: correlation 0.94–0.99 and relief
+//! within a tenth for the thesis' reliefs, 0.85–0.98 for bumps at random places, where brightness
+//! as height has −0.7–0.1. Tried and left: marching from all summits, told their places but no
+//! heights, has 0.73–1.00 and 0.27 for surfaces without a ground; from every flat place as a summit
+//! −0.8–0.1. An albedo that varies by 2 % hides every ground: nothing is found then, and
+//! [`above_flat_ground`] says so.
 
 use crate::borders::Borders;
 use crate::raster::Raster;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Share of the image that the ground has at least. Source: ours; the thesis' reliefs leave a quarter, surfaces without a ground 2 %.
+/// Share of the image that the ground has at least. Source: ours; the thesis' reliefs leave a
+/// quarter, surfaces without a ground 2 %.
 pub const LEAST_GROUND: f64 = 0.1;
-/// Share of the image that may be brighter than the ground by more than its own spread: on an even albedo nothing is.
+/// Share of the image that may be brighter than the ground by more than its own spread: on an even
+/// albedo nothing is.
 const MOST_BRIGHTER: f64 = 0.01;
-/// Least that counts as the ground's own spread, below its brightness and over it: 8-bit rounding, and slopes up to 0.14.
+/// Least that counts as the ground's own spread, below its brightness and over it: 8-bit rounding,
+/// and slopes up to 0.14.
 const LEAST_SPREAD: f64 = 0.01;
 /// Spreads below the ground's brightness that are still ground.
 const SPREADS: f64 = 3.0;
@@ -45,10 +53,12 @@ const ROUNDS: usize = 3;
 /// Levels of the histogram.
 const LEVELS: usize = 256;
 
-/// Heights in texels above the ground of an image of linear brightness. Slopes below 0.14 are taken for ground.
+/// Heights in texels above the ground of an image of linear brightness. Slopes below 0.14 are taken
+/// for ground.
 ///
 /// # Errors
-/// The share of the image that is ground, where that is too little; 0 where there is none, because places are brighter than it or all is noise.
+/// The share of the image that is ground, where that is too little; 0 where there is none, because
+/// places are brighter than it or all is noise.
 pub fn above_flat_ground(image: &Raster) -> Result<Raster, f64> {
     let grid = Grid {
         width: image.width,
@@ -84,7 +94,8 @@ fn steepness(facing: f64, brightness: f64) -> f64 {
     (ratio * ratio - 1.0).max(0.0).sqrt().min(STEEPEST)
 }
 
-/// The commonest brightness of the brighter half, and how far places scatter above it: noise, as slopes only darken.
+/// The commonest brightness of the brighter half, and how far places scatter above it: noise, as
+/// slopes only darken.
 fn facing(image: &Raster) -> Option<(f64, f64)> {
     let (low, high) = image.range();
     if high <= low || high <= 0.0 {
@@ -211,7 +222,8 @@ impl Grid {
     }
 }
 
-/// Height of a texel from its lower neighbours along both axes: (z − a)² + (z − b)² = slope², or from one of them.
+/// Height of a texel from its lower neighbours along both axes: (z − a)² + (z − b)² = slope², or
+/// from one of them.
 fn upwind([a, b]: [f64; 2], slope: f64) -> f64 {
     let (low, high) = (a.min(b), a.max(b));
     if high - low >= slope {
@@ -238,7 +250,8 @@ mod tests {
         })
     }
 
-    /// A cone of slope s rises to s·r: straight lines are marched exactly along an axis, a few percent off between.
+    /// A cone of slope s rises to s·r: straight lines are marched exactly along an axis, a few
+    /// percent off between.
     #[test]
     fn a_cone_on_a_plate_rises_by_its_slope_times_its_radius() {
         let cone = Raster::from_fn(96, 96, |x, y| {

@@ -6,14 +6,16 @@
 //! ```
 //! A wave of length λ is felt by 8 J₂(κ)/κ² of its height, κ = 2π a/λ.
 //!
-//! Source: K. L. Johnson, "Contact mechanics" (1985) §4.3, recalled: the ground as a mattress of springs (Winkler), whose circle is a and whose
-//! pressure falls to the rim as w does. The weights are ours: of each place as much is felt as presses there, so that ground
-//! gives a deep ball its mean level and a ball that only just touches the height of one place.
+//! Source: K. L. Johnson, "Contact mechanics" (1985) §4.3, recalled: the ground as a mattress of
+//! springs (Winkler), whose circle is a and whose pressure falls to the rim as w does. The weights
+//! are ours: of each place as much is felt as presses there, so that ground gives a deep ball its
+//! mean level and a ball that only just touches the height of one place.
 //!
-//! The integral is a sum over 64 places, evenly about each of five rings. What is too fine for them is blurred by the source before it is read.
-//! Radii and weights are the ones whose sum, over waves of every length and direction and every share of two neighbouring octaves of
-//! a map's blur, is nowhere farther from the law than 0.74 % of the wave's height: beyond κ = 8 they make up for half of what
-//! the blur takes, which Gauss' nodes for w do not (74 places, 1.1 %).
+//! The integral is a sum over 64 places, evenly about each of five rings. What is too fine for them
+//! is blurred by the source before it is read. Radii and weights are the ones whose sum, over waves
+//! of every length and direction and every share of two neighbouring octaves of a map's blur, is
+//! nowhere farther from the law than 0.74 % of the wave's height: beyond κ = 8 they make up for
+//! half of what the blur takes, which Gauss' nodes for w do not (74 places, 1.1 %).
 
 use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 
@@ -37,8 +39,9 @@ pub fn footprint_radius_m(ball_radius_m: f64, depth_m: f64) -> f64 {
     (depth_m * (2.0 * ball_radius_m - depth_m)).sqrt()
 }
 
-/// Samples a source as a ball feels it whose footprint is `radius_m` wide, one a sample: heights and slopes are means, the rest is as it is in the
-/// middle. A source that is not [stateless](crate::height_field::Properties::is_stateless) is felt in the middle.
+/// Samples a source as a ball feels it whose footprint is `radius_m` wide, one a sample: heights
+/// and slopes are means, the rest is as it is in the middle. A source that is not
+/// [stateless](crate::height_field::Properties::is_stateless) is felt in the middle.
 pub fn sample_under(
     source: &mut (impl HeightField + ?Sized),
     path: &PathBlock<'_>,
@@ -122,7 +125,8 @@ mod tests {
         HeightMap::new(&Raster::from_fn(side, side, wave), extent, Wrap::Repeat).unwrap()
     }
 
-    /// Height of the waves under a ball, and the rms of the rest over theirs, by fitting the wave to 64 places.
+    /// Height of the waves under a ball, and the rms of the rest over theirs, by fitting the wave
+    /// to 64 places.
     fn height_felt(map: &mut HeightMap, u: usize, v: usize, radius_m: f64, velocity: [f64; 2]) -> (f64, f64) {
         let places: Vec<[f64; 2]> =
             (0..64).map(|i| [0.0131 * f64::from(i) * SIDE_M, 0.0077 * f64::from(i) * SIDE_M]).collect();

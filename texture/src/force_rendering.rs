@@ -1,4 +1,5 @@
-//! Force renderings of a relief (the thesis'): which way the force points that a relief answers with.
+//! Force renderings of a relief (the thesis'): which way the force points that a relief answers
+//! with.
 
 /// Which way the force points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

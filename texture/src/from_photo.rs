@@ -5,8 +5,8 @@
 //!                                                └─ residual ──────→ heights ─ fine ─┘
 //!                                                                        └→ 1/f^α → roughness R, micro-relief
 //! ```
-//! Source: document 004, the chain of chapters 6 (roughness), 7 (symmetry) and 8 (heights). Nothing in it
-//! is tuned by hand:
+//! Source: document 004, the chain of chapters 6 (roughness), 7 (symmetry) and 8 (heights). Nothing
+//! in it is tuned by hand:
 //!
 //! | step | here |
 //! |---|---|
@@ -16,14 +16,17 @@
 //! | which way up | [`Sign`] |
 //! | R and micro-relief | [`crate::relief_spectrum`] of the heights |
 //!
-//! **Contrast is slope**, so half the contrast gives half the relief and half the micro-relief, and a blank wall next to none. How steep one unit of contrast
-//! is depends on light and camera: [`PhotoOptions::calibration`] is the factor, [`calibration`] takes it from a sample of known relief.
+//! **Contrast is slope**, so half the contrast gives half the relief and half the micro-relief, and
+//! a blank wall next to none. How steep one unit of contrast is depends on light and camera:
+//! [`PhotoOptions::calibration`] is the factor, [`calibration`] takes it from a sample of known
+//! relief.
 //!
-//! Without a lattice nothing is averaged: the whole picture is the primitive, heights and R are taken from it. They are
-//! also taken from the whole picture when the pattern wanders off its lattice, as scales on a bent skin do: then the mean of
-//! all cells is a blur ([`Repetition::wanders`]).
-//! Brightness has no size: a texel is [`TEXEL_M`] wide unless told. The document's users preferred heights
-//! twice as large as computed; [`PhotoOptions::exaggeration`] is 1, 2 or 4 there.
+//! Without a lattice nothing is averaged: the whole picture is the primitive, heights and R are
+//! taken from it. They are also taken from the whole picture when the pattern wanders off its
+//! lattice, as scales on a bent skin do: then the mean of all cells is a blur
+//! ([`Repetition::wanders`]). Brightness has no size: a texel is [`TEXEL_M`] wide unless told. The
+//! document's users preferred heights twice as large as computed; [`PhotoOptions::exaggeration`] is
+//! 1, 2 or 4 there.
 
 mod heights;
 mod options;
@@ -47,8 +50,8 @@ use crate::symmetry::{self, Lattice, WallpaperGroup};
 use asperity_dsp::DesignError;
 use reduced::means;
 
-/// [`symmetry::steadiness`] below which the mean cell is not used. Source: ours; at least 0.95 for strict patterns of the tests
-/// and photographs, 0.08 for the skin among the photographs.
+/// [`symmetry::steadiness`] below which the mean cell is not used. Source: ours; at least 0.95 for
+/// strict patterns of the tests and photographs, 0.08 for the skin among the photographs.
 const STEADY: f64 = 0.7;
 /// Largest micro-noise that is written, m: sandpaper.
 pub const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
@@ -66,8 +69,8 @@ pub struct Repetition {
     pub group: WallpaperGroup,
     /// Share of the picture's variance that repeats, 0–1.
     pub share: f64,
-    /// True where the pattern drifts off its lattice, so that its mean cell is a blur: heights and roughness are then those of
-    /// the whole picture.
+    /// True where the pattern drifts off its lattice, so that its mean cell is a blur: heights and
+    /// roughness are then those of the whole picture.
     pub wanders: bool,
 }
 
@@ -149,7 +152,8 @@ pub struct PhotoSurface {
     pub roughness: Raster,
     /// Rms of the micro-noise in the octave around 1 mm, m, for the engine's overlay.
     pub micro_relief_m: f64,
-    /// Dimension of the residual's relief, or of the whole where nothing repeats; `None` when that is flat.
+    /// Dimension of the residual's relief, or of the whole where nothing repeats; `None` when that
+    /// is flat.
     pub dimension: Option<f64>,
     /// Repeating pattern; `None` when nothing repeats.
     pub repetition: Option<Repetition>,
@@ -175,11 +179,12 @@ pub struct PhotoSurface {
     pub tileable: bool,
 }
 
-/// Makes a surface of a photograph: grey values 0–1 as stored (sRGB). `progress` is told the fraction done.
+/// Makes a surface of a photograph: grey values 0–1 as stored (sRGB). `progress` is told the
+/// fraction done.
 ///
 /// # Errors
-/// When the picture is smaller than 16 × 16, holds numbers that are not finite, or an option is outside
-/// its range.
+/// When the picture is smaller than 16 × 16, holds numbers that are not finite, or an option is
+/// outside its range.
 pub fn surface_from_photo(
     picture: &Raster,
     options: &PhotoOptions,
@@ -252,8 +257,9 @@ pub fn surface_from_photo(
     })
 }
 
-/// The factor on heights that makes a sample's photograph give its known relief: the same camera, light and texel size then give
-/// other surfaces theirs. `options` are those of the photograph of the sample.
+/// The factor on heights that makes a sample's photograph give its known relief: the same camera,
+/// light and texel size then give other surfaces theirs. `options` are those of the photograph of
+/// the sample.
 ///
 /// # Errors
 /// As [`surface_from_photo`], and when the sample shows no relief.
@@ -267,7 +273,8 @@ pub fn calibration(sample: &Raster, relief_m: f64, options: &PhotoOptions) -> Re
     Ok(relief_m / found_m)
 }
 
-/// The lattice of a picture; of a large one, that of its halves, where patterns below 16 texels are not seen.
+/// The lattice of a picture; of a large one, that of its halves, where patterns below 16 texels are
+/// not seen.
 fn lattice_of(picture: &Raster) -> Option<Lattice> {
     if picture.width * picture.height <= MOST_TEXELS / 2 {
         return symmetry::find_lattice(picture);

@@ -1,4 +1,5 @@
-//! Heights from slopes: the surface whose derivatives are nearest to a given field, in the mean square.
+//! Heights from slopes: the surface whose derivatives are nearest to a given field, in the mean
+//! square.
 //!
 //! ```text
 //! Z(k) = (D_x* P + D_y* Q) / (|D_x|² + |D_y|²)        Z(0) = 0
@@ -8,11 +9,11 @@
 //! | P, Q | spectra of the slopes along u and v, height per texel |
 //! | D_x, D_y | the derivative that made them, [`Derivative`] |
 //!
-//! Source: R. T. Frankot and R. Chellappa, "A method for enforcing integrability in shape from shading
-//! algorithms", IEEE PAMI 10, 1988. Changed: the paper divides by i ω; slopes that somebody computed by
-//! differences of texels are put together by the same differences. Which ones they were can be read
-//! from the slopes ([`SlopeSpectrum::possible_derivatives`]): only with the right ones is D_y P = D_x Q. Slopes that have a noise are put
-//! together by [`integrate_rounded`].
+//! Source: R. T. Frankot and R. Chellappa, "A method for enforcing integrability in shape from
+//! shading algorithms", IEEE PAMI 10, 1988. Changed: the paper divides by i ω; slopes that somebody
+//! computed by differences of texels are put together by the same differences. Which ones they were
+//! can be read from the slopes ([`SlopeSpectrum::possible_derivatives`]): only with the right ones
+//! is D_y P = D_x Q. Slopes that have a noise are put together by [`integrate_rounded`].
 //!
 //! A field that does not tile is not taken to repeat but to go on mirrored ([`integrate_open`]).
 
@@ -52,11 +53,14 @@ pub enum Derivative {
     Exact,
     /// Half the difference of the neighbours on both sides.
     Central,
-    /// Central difference averaged across with weights ¼, ½, ¼, as many height-to-normal converters have it.
+    /// Central difference averaged across with weights ¼, ½, ¼, as many height-to-normal converters
+    /// have it.
     Sobel,
-    /// Half way between [`Derivative::Exact`] and [`Derivative::Central`]: for slopes that either may have made. With D_x the smaller of two
-    /// symbols and D_x' the larger, (D_x' − D_x)/(D_x' + D_x) is the least relative error of a wave's height that can be had in the worse case. Waves shorter than
-    /// six texels, which central differences hardly see, are not raised above 1.1 times what they are if true slopes made them, a fifth more power.
+    /// Half way between [`Derivative::Exact`] and [`Derivative::Central`]: for slopes that either
+    /// may have made. With D_x the smaller of two symbols and D_x' the larger, (D_x' − D_x)/(D_x' +
+    /// D_x) is the least relative error of a wave's height that can be had in the worse case. Waves
+    /// shorter than six texels, which central differences hardly see, are not raised above 1.1
+    /// times what they are if true slopes made them, a fifth more power.
     ExactOrCentral,
 }
 
@@ -68,7 +72,8 @@ pub const DERIVATIVES: [Derivative; 3] = [Derivative::Exact, Derivative::Central
 const BLIND: f64 = 0.004;
 /// Limit for [`Derivative::Sobel`], which is nearly blind to many more.
 const SOBEL_BLIND: f64 = 0.01;
-/// By how much [`Derivative::ExactOrCentral`] may raise waves above those of true slopes: a fifth more power.
+/// By how much [`Derivative::ExactOrCentral`] may raise waves above those of true slopes: a fifth
+/// more power.
 const MOST_RAISED: f64 = 1.1;
 
 impl Derivative {
@@ -83,8 +88,8 @@ impl Derivative {
         }
     }
 
-    /// [`Derivative::symbol`] in a `width` × `height` transform: the exact derivative of the highest
-    /// frequency of an even side is zero at every texel.
+    /// [`Derivative::symbol`] in a `width` × `height` transform: the exact derivative of the
+    /// highest frequency of an even side is zero at every texel.
     fn at_bin(self, place: usize, width: usize, height: usize) -> [f64; 2] {
         let (kx, ky) = (place / height, place % height);
         let [mut dx, mut dy] = self.symbol([angular_frequency(kx, width), angular_frequency(ky, height)]);
@@ -111,7 +116,8 @@ impl Derivative {
     }
 }
 
-/// Half way between a true derivative's and a central difference's symbol, and at least 1/1.1 of the former.
+/// Half way between a true derivative's and a central difference's symbol, and at least 1/1.1 of
+/// the former.
 fn half_way(omega: f64) -> f64 {
     let half = 0.5 * (omega + omega.sin());
     if half.abs() < omega.abs() / MOST_RAISED { omega / MOST_RAISED } else { half }

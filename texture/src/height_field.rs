@@ -1,9 +1,10 @@
 //! Trait by which the engine reads a surface: in blocks, along a contact path.
 //!
 //! A source is owned by the audio half and called only from it. It must not allocate, lock, wait or
-//! panic, and **every sample must be a function of the path at that sample alone** (or of state that
-//! is anchored to the absolute sample index), so that any split of time into blocks gives the same
-//! bits. The path's positions are finite; they may be any number of periods away from the origin.
+//! panic, and **every sample must be a function of the path at that sample alone** (or of state
+//! that is anchored to the absolute sample index), so that any split of time into blocks gives the
+//! same bits. The path's positions are finite; they may be any number of periods away from the
+//! origin.
 
 mod samples;
 mod touch;
@@ -24,12 +25,14 @@ pub const NO_TOUCH_N: f64 = 1e-6;
 /// Continuation of a source beyond one tile: what texture coordinates that wrap mean on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Beyond {
-    /// The same again, or relief that does not belong to places: a jump by a tile is no movement. Positions run on beyond the tile, so a source
-    /// whose period does not divide it goes on smoothly and is another place in the next lap.
+    /// Repeated, or relief that does not belong to places: a jump by a tile is no movement.
+    /// Positions run on beyond the tile, so a source whose period does not divide it goes on
+    /// smoothly and is another place in the next lap.
     Same,
-    /// The same mirrored: a jump by two tiles is no movement.
+    /// Mirrored: a jump by two tiles is no movement.
     Mirrored,
-    /// More of its kind, unlike the tile: the engine makes a tile of it ([`crate::tiled`]), blended where it meets itself.
+    /// More of its kind, unlike the tile: the engine makes a tile of it ([`crate::tiled`]), blended
+    /// where it meets itself.
     Fresh,
     /// Its edge: a jump across is a jump. Who runs on beyond it without wrapping goes on.
     Edge,
@@ -40,15 +43,17 @@ pub enum Beyond {
 pub struct Properties {
     /// The wavelengths it represents: every one that it can be steered to.
     pub band: WavelengthBand,
-    /// How far from zero its heights can be, metres; 0 if it cannot tell.
+    /// Largest distance of its heights from zero, metres; 0 if it cannot tell.
     pub reach_m: f64,
-    /// What lies beyond a tile.
+    /// Continuation beyond a tile.
     pub beyond: Beyond,
-    /// Whether it is hard everywhere, and [`HeightField::sample`] fills every entry of a block besides slopes that are not read: friction,
-    /// roughness, compliance and answer too. The engine then fills nothing before it and lets nothing give way.
+    /// True where it is hard everywhere, and [`HeightField::sample`] fills every entry of a block
+    /// besides slopes that are not read: friction, roughness, compliance and answer too. The engine
+    /// then fills nothing before it and lets nothing give way.
     pub is_rigid: bool,
-    /// Whether its samples depend on nothing but their places, so that it may be read beside the path as well: under a ball that stands
-    /// in soft ground ([`crate::footprint`]), and about a contact for how the ground bends ([`hollow_m`]).
+    /// True where its samples depend on nothing but their places, so that it may be read beside the
+    /// path as well: under a ball that stands in soft ground ([`crate::footprint`]), and about a
+    /// contact for how the ground bends ([`hollow_m`]).
     pub is_stateless: bool,
     /// The law by which it carries a tip, for a device's own thread; none where it is hard.
     pub tip_law: Option<TipLaw>,
@@ -71,7 +76,7 @@ impl Properties {
         }
     }
 
-    /// Those of two sources of which either may be met at a place.
+    /// Properties of two sources of which either may be met at a place.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -86,7 +91,8 @@ impl Properties {
     }
 }
 
-/// Asks a source, as a [change](HeightField::set), for what it has become: at the end of a render it puts its results in here.
+/// Asks a source, as a [change](HeightField::set), for what it has become: at the end of a render
+/// it puts its results in here.
 #[derive(Debug, Default)]
 pub struct Finish(pub RefCell<Vec<Box<dyn Any>>>);
 
@@ -111,21 +117,25 @@ impl Default for Setup<'_> {
 /// A part of a combination.
 pub type Part = Box<dyn HeightField>;
 
-/// How the parts of a combination share a touch: up to [`MOST_SHARES`] of a part, the touch as that part gets it, and its weight in the reaction.
+/// Shares of the parts of a combination in a touch: up to [`MOST_SHARES`] of a part, the touch as
+/// that part gets it, and its weight in the reaction.
 pub type Shares = [Option<(usize, Touch, f64)>; MOST_SHARES];
 /// Parts, or copies of a part, that a touch can reach.
 pub const MOST_SHARES: usize = 8;
 
 /// A surface that can be sampled in real time.
 ///
-/// A source of one's own is [`properties`](Self::properties) and [`sample`](Self::sample), and as much of [`prepare`](Self::prepare),
-/// [`touch`](Self::touch) and [`set`](Self::set) as it needs. A change while it is touched comes by `set`, at a sample that is known, or through a
-/// handle of its own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game steered so does not replay to the bit.
-/// Positions are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the
-/// surface's width and height, or [`Properties::beyond`] says that they are not.
+/// A source of one's own is [`properties`](Self::properties) and [`sample`](Self::sample), and as
+/// much of [`prepare`](Self::prepare), [`touch`](Self::touch) and [`set`](Self::set) as it needs. A
+/// change while it is touched comes by `set`, at a sample that is known, or through a handle of its
+/// own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game
+/// steered so does not replay to the bit. Positions are metres from uv (0, 0) and run on beyond the
+/// surface; where texture coordinates wrap, heights must be the same again after the surface's
+/// width and height, or [`Properties::beyond`] says that they are not.
 ///
-/// A combination of other sources gives its [`parts`](Self::parts) instead, and [`shares`](Self::shares) where they do not all get
-/// every touch as it is: preparing, touching and changing are then forwarded here, once for all combinations.
+/// A combination of other sources gives its [`parts`](Self::parts) instead, and
+/// [`shares`](Self::shares) where they do not all get every touch as it is: preparing, touching and
+/// changing are then forwarded here, once for all combinations.
 ///
 /// ```
 /// use asperity_texture::height_field::{HeightField, PathBlock, Properties, SurfaceBlock, WavelengthBand};
@@ -171,14 +181,16 @@ pub const MOST_SHARES: usize = 8;
 /// assert!((out.height_m[0] - 1e-4).abs() < 1e-12);
 /// ```
 pub trait HeightField: Send + Sync {
-    /// Its properties on a surface of which one tile is `tile_m` along u and v. Read when the surface is added, not again.
+    /// Its properties on a surface of which one tile is `tile_m` along u and v. Read when the
+    /// surface is added, not again.
     fn properties(&self, tile_m: [f64; 2]) -> Properties;
 
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
-    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source that keeps
-    /// time or remembers its contacts must take both from here: no contact touches, and samples are counted anew.
+    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes;
+    /// it may allocate. A source that keeps time or remembers its contacts must take both from
+    /// here: no contact touches, and samples are counted anew.
     ///
     /// # Errors
     /// When the source cannot serve such an engine; the message names the field.
@@ -191,9 +203,11 @@ pub trait HeightField: Send + Sync {
         touch_parts(self, touch)
     }
 
-    /// Changes the source at an absolute sample, counted at [`Setup::sample_rate_hz`] as [`PathBlock::first_sample`] is, without a click;
-    /// returns whether the change was meant for this source and acceptable. That nothing clicks is the source's to keep: a new pitch carries
-    /// on the phase of each contact ([`PathBlock::contact`]). A change is any plain value that the source finds by its type: parameters, a factor.
+    /// Changes the source at an absolute sample, counted at [`Setup::sample_rate_hz`] as
+    /// [`PathBlock::first_sample`] is, without a click; returns whether the change was meant for
+    /// this source and acceptable. That nothing clicks is the source's to keep: a new pitch carries
+    /// on the phase of each contact ([`PathBlock::contact`]). A change is any plain value that the
+    /// source finds by its type: parameters, a factor.
     fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
         set_parts(self.parts(), change, sample)
     }
@@ -203,8 +217,8 @@ pub trait HeightField: Send + Sync {
         &mut []
     }
 
-    /// The shares of a combination's parts in a touch; a contact that begins does so in each of them. Each part has the whole touch, unless
-    /// this says otherwise.
+    /// The shares of a combination's parts in a touch; a contact that begins does so in each of
+    /// them. Each part has the whole touch, unless this says otherwise.
     fn shares(&mut self, touch: &Touch) -> Shares {
         let count = self.parts().len();
         std::array::from_fn(|part| (part < count).then_some((part, *touch, 1.0)))
@@ -236,9 +250,10 @@ pub fn touch_parts(combination: &mut (impl HeightField + ?Sized), touch: &Touch)
     })
 }
 
-/// How much higher the ground lies on the mean of four points `reach_m` away, along u and v, than where it is touched by a tip of this
-/// radius, m: above 0 in a hollow, below 0 on a crest. The ground is blurred to an eighth of the reach. Only of a
-/// [stateless](Properties::is_stateless) source; `room` is overwritten.
+/// Height of the ground in the mean of four points `reach_m` away, along u and v, over that where
+/// it is touched by a tip of this radius, m: above 0 in a hollow, below 0 on a crest. The ground is
+/// blurred to an eighth of the reach. Only of a [stateless](Properties::is_stateless) source;
+/// `room` is overwritten.
 pub fn hollow_m(
     source: &mut (impl HeightField + ?Sized),
     touch: &Touch,

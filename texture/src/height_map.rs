@@ -10,10 +10,10 @@
 //! | ℓ | pyramid of `spline`s | each level half the size, filtered; texels are measured along the stroke |
 //! | R | roughness map of its own size, or a number | sampled likewise, kept within 0–1 |
 //!
-//! Source: Hasti §III-C (displacement and roughness maps). What we changed: the paper does not say how
-//! the map is interpolated; bilinear leaves a velocity SNR of 17 dB on a sine of 12.8 texels a period,
-//! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
-//! that a seamless map has no seam.
+//! Source: Hasti §III-C (displacement and roughness maps). What we changed: the paper does not say
+//! how the map is interpolated; bilinear leaves a velocity SNR of 17 dB on a sine of 12.8 texels a
+//! period, the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid
+//! as well, so that a seamless map has no seam.
 
 mod blend;
 mod extent;
@@ -36,8 +36,8 @@ use blend::Blend;
 use extent::check;
 use std::sync::Arc;
 
-/// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
-/// Assumed; measured values range from 0.2 to above 1.
+/// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard
+/// material. Assumed; measured values range from 0.2 to above 1.
 pub const FRICTION: f64 = 0.5;
 
 /// A surface made of maps.
@@ -200,7 +200,8 @@ impl Pyramid {
         Self { levels: levels.into(), constant }
     }
 
-    /// The map along a path, blurred to the footprints, and its slopes if `SLOPES`; no footprint is longer than `widest_m`.
+    /// The map along a path, blurred to the footprints, and its slopes if `SLOPES`; no footprint is
+    /// longer than `widest_m`.
     fn sample_block<const SLOPES: bool>(
         &self,
         path: &PathBlock<'_>,

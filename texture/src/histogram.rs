@@ -4,14 +4,14 @@
 //! i' = F_ref⁻¹(F(i))
 //! ```
 //! (document 002, paragraph on the histogram conversion unit), F the cumulative distribution of the
-//! numbers and F_ref that of the reference. With equally many numbers the k-th smallest simply takes
-//! the value of the reference's k-th smallest; with unequal counts the quantile between two
+//! numbers and F_ref that of the reference. With equally many numbers the k-th smallest simply
+//! takes the value of the reference's k-th smallest; with unequal counts the quantile between two
 //! neighbours is interpolated.
 //!
-//! Numbers closer together than [`TIE`] of the range are ordered by a hash of their position: sub-bands
-//! of regular patterns hold thousands of values that are equal but for rounding, and ordering those by
-//! rounding or by position would write stripes into the result. So matching numbers with themselves
-//! gives them back to within [`TIE`] of their range.
+//! Numbers closer together than [`TIE`] of the range are ordered by a hash of their position:
+//! sub-bands of regular patterns hold thousands of values that are equal but for rounding, and
+//! ordering those by rounding or by position would write stripes into the result. So matching
+//! numbers with themselves gives them back to within [`TIE`] of their range.
 
 use asperity_dsp::rng::hash_u32;
 
@@ -21,8 +21,9 @@ pub const TIE: f64 = 1e-9;
 /// Bits sorted in one pass.
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
-/// Places of the two digits that are sorted by: the upper 22 bits of the 32 of a key, which lie above its position.
-/// What these leave together, a few neighbours as a rule, is sorted by comparing.
+/// Places of the two digits that are sorted by: the upper 22 bits of the 32 of a key, which lie
+/// above its position. What these leave together, a few neighbours as a rule, is sorted by
+/// comparing.
 const DIGIT_SHIFTS: [u32; 2] = [64 - 2 * DIGIT_BITS, 64 - DIGIT_BITS];
 
 /// A sorted set of numbers: a reference's histogram.
@@ -111,8 +112,8 @@ impl Matcher {
     }
 
     /// Leaves in `keys` the positions of `values` (low halves) in ascending order of value, where
-    /// values closer than `tie` of the range come in random order: a radix sort. `sort` brings keys in order
-    /// that it leaves together.
+    /// values closer than `tie` of the range come in random order: a radix sort. `sort` brings keys
+    /// in order that it leaves together.
     fn order(&mut self, values: &[f64], tie: f64, sort: impl Fn(&mut [u64])) {
         let mut counts = self.make_keys(values, tie);
         self.other.resize(values.len(), 0);
@@ -152,7 +153,8 @@ impl Matcher {
     }
 }
 
-/// Sorts by `sort` all runs of keys with equal digits in which upper halves do not grow from each to the next.
+/// Sorts by `sort` all runs of keys with equal digits in which upper halves do not grow from each
+/// to the next.
 fn sort_what_is_left(keys: &mut [u64], sort: impl Fn(&mut [u64])) {
     let mut at = 1;
     while at < keys.len() {

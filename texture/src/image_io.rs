@@ -1,9 +1,11 @@
-//! Maps as artists have them: one channel of a PNG, JPEG, PGM, GIF, WebP, TIFF, TGA, BMP or EXR file, and 16-bit PNG back.
+//! Maps as artists have them: one channel of a PNG, JPEG, PGM, GIF, WebP, TIFF, TGA, BMP or EXR
+//! file, and 16-bit PNG back.
 //!
-//! The only room that names the `image` crate and its decoders. What the file *is* decides, never what it is called:
-//! palettes are expanded (the index of a pixel is not its grey), interlacing is undone, the file may
-//! have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is turned back, of a moving GIF the first frame counts. A header is believed only within [`MAX_SIDE`] and
-//! [`MAX_TEXELS`], before any pixel is decoded.
+//! The only room that names the `image` crate and its decoders. What the file *is* decides, never
+//! what it is called: palettes are expanded (the index of a pixel is not its grey), interlacing is
+//! undone, the file may have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is
+//! turned back, of a moving GIF the first frame counts. A header is believed only within
+//! [`MAX_SIDE`] and [`MAX_TEXELS`], before any pixel is decoded.
 
 #[cfg(feature = "exr")]
 mod exr;
@@ -33,14 +35,15 @@ const FIRST_BYTES: u64 = 64;
 /// Reads one channel of a picture.
 ///
 /// # Errors
-/// [`ImageError`] when the file cannot be read, is no picture, is damaged, too large, lacks the channel
-/// or holds values that are not finite.
+/// [`ImageError`] when the file cannot be read, is no picture, is damaged, too large, lacks the
+/// channel or holds values that are not finite.
 pub fn load_channel(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelImage, ImageError> {
     let path = path.as_ref();
     load(path, channel).map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
-/// Reads the brightness of a photograph, and how much of it is colour rather than light ([`ColourSums::fraction`]), decoding it once.
+/// Reads the brightness of a photograph, and how much of it is colour rather than light
+/// ([`ColourSums::fraction`]), decoding it once.
 ///
 /// # Errors
 /// As [`load_channel`].
@@ -69,7 +72,8 @@ pub struct Photograph {
     pub jpeg_divisor: f64,
 }
 
-/// Reads a photograph reduced to at most `most_texels`, without ever holding all of a larger one as numbers.
+/// Reads a photograph reduced to at most `most_texels`, without ever holding all of a larger one as
+/// numbers.
 ///
 /// # Errors
 /// As [`load_channel`].
@@ -102,7 +106,8 @@ pub fn read_channel(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Prob
     decode(Cursor::new(bytes), channel)?.channel(channel)
 }
 
-/// Reads one channel of a picture as a map of a surface ([`Picture::map`]), from the bytes of its file.
+/// Reads one channel of a picture as a map of a surface ([`Picture::map`]), from the bytes of its
+/// file.
 ///
 /// # Errors
 /// As [`load_channel`], and when it is a normal map.
@@ -120,8 +125,8 @@ pub fn load_map(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelImage
     read.map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
-/// Writes values 0–1 (clamped) as a 16-bit grey PNG. The file appears under its name complete or not
-/// at all.
+/// Writes values 0–1 (clamped) as a 16-bit grey PNG. The file appears under its name complete or
+/// not at all.
 ///
 /// # Errors
 /// [`ImageError`] when the raster is empty or not finite, or the file cannot be written.
@@ -146,7 +151,8 @@ fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     Ok(BufReader::new(file))
 }
 
-/// The picture of a photograph's file, with the brightness that the file itself has, and how much of it is colour.
+/// The picture of a photograph's file, with the brightness that the file itself has, and how much
+/// of it is colour.
 #[cfg(feature = "offline")]
 fn decode_photograph(file: impl BufRead + Seek) -> Result<(Picture, f64), Problem> {
     let (photograph, format) = decode_as(file, Channel::Luma)?;
@@ -190,7 +196,8 @@ fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture
     if channel == Channel::A && !decoder.color_type().has_alpha() {
         return Err(Problem::NoAlpha);
     }
-    // Telephones store a picture as the sensor lies and say in EXIF which way up it is. Damaged EXIF says nothing.
+    // Telephones store a picture as the sensor lies and say in EXIF which way up it is. Damaged
+    // EXIF says nothing.
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut image = DynamicImage::from_decoder(decoder).map_err(translate)?;
     image.apply_orientation(orientation);
@@ -209,8 +216,9 @@ fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
     }
 }
 
-/// Tests whether these are the first bytes of a TGA file, which has no signature: palette or none, a kind of picture, bits a pixel.
-/// Source: Truevision, TGA file format specification 2.0, field 1–5.
+/// Tests whether these are the first bytes of a TGA file, which has no signature: palette or none,
+/// a kind of picture, bits a pixel. Source: Truevision, TGA file format specification 2.0, field
+/// 1–5.
 fn is_tga(first: &[u8]) -> bool {
     let [_, palette, kind, .., bits, descriptor] = first.first_chunk::<18>().unwrap_or(&[0; 18]);
     let is_indexed = matches!(kind, 1 | 9);

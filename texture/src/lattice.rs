@@ -9,10 +9,10 @@
 //! | cell | a raster of heights; its columns run along t1, its rows along t2, texel centres at (i + ½)/N |
 //! | t1, t2 | `t1_m`, `t2_m`: any two translations that are not parallel |
 //!
-//! Source: chapter 7 of the texture-analysis thesis describes a symmetric texture by its primitive and
-//! the integer combinations of two translations; this is the engine's end of that description. Ours:
-//! the cell is read with an interpolating cubic B-spline whose coefficients are periodic, so that
-//! height, slope and curvature run through cell borders as through any other point; where the
+//! Source: chapter 7 of the texture-analysis thesis describes a symmetric texture by its primitive
+//! and the integer combinations of two translations; this is the engine's end of that description.
+//! Ours: the cell is read with an interpolating cubic B-spline whose coefficients are periodic, so
+//! that height, slope and curvature run through cell borders as through any other point; where the
 //! contact's footprint does not resolve the texels, copies of the cell smoothed by 1–4–6–4–1 at
 //! dyadic scales take over (not thinned out, so that any cell size will do), down to its mean.
 

@@ -1,28 +1,31 @@
 //! Light direction of a photograph, and whether there is one.
 //!
-//! On gentle slopes a light at tilt τ makes the image the derivative of the heights along τ, so that its
-//! power at direction θ goes as cos²(θ − τ), **in every octave of wavelengths alike**, whatever the
-//! surface, if that has no direction of its own:
+//! On gentle slopes a light at tilt τ makes the image the derivative of the heights along τ, so
+//! that its power at direction θ goes as cos²(θ − τ), **in every octave of wavelengths alike**,
+//! whatever the surface, if that has no direction of its own:
 //! ```text
 //! c_m = Σ power · e^(imθ) / Σ power        each bin over the mean of its ring
 //! c_2 = ½ e^(2iτ)        c_4 = 0
 //! ```
-//! Diffuse light gives c_2 = 0. A pattern that has a direction of its own (rows of bricks, a weave) is not
-//! cosine-shaped: its edges give a c_4 as well, or a c_2 in some octaves only. Light is found when every
-//! octave has the c_2 of a light ([`LEAST_DIRECTION`]) and the c_4 of none ([`MOST_CORNER`]) and they agree
-//! ([`LEAST_AGREEMENT`]). Measured: renderings of ground, rock and metal maps at 30° and 60° have c_2 of
-//! 0.36–0.55 and c_4 below 0.15; seven photographs of brick, tile, walkway, reptile skin, nuts and
-//! gravel all break one of the rules, where a rule by c_2 alone took four of them for lit from a side. **The three limits were
-//! set on these pictures**, so they are no evidence. On renderings made afterwards (24 random surfaces, random lights of 30–60°
-//! slant, 8 bits, random albedo) it finds 24 lights, off by at most 3.7°, and none in 48 pictures without one.
-//! The middle octaves' brightness must be as often above its mean as below it, within [`MOST_SKEWNESS`]: scratches all in one direction
-//! pass the other rules, but are bright lines on dark or the other way round.
-//! The spectral argument is Pentland's (IJCV 4, 1990); the rule is ours.
+//! Diffuse light gives c_2 = 0. A pattern that has a direction of its own (rows of bricks, a weave)
+//! is not cosine-shaped: its edges give a c_4 as well, or a c_2 in some octaves only. Light is
+//! found when every octave has the c_2 of a light ([`LEAST_DIRECTION`]) and the c_4 of none
+//! ([`MOST_CORNER`]) and they agree ([`LEAST_AGREEMENT`]). Measured: renderings of ground, rock and
+//! metal maps at 30° and 60° have c_2 of 0.36–0.55 and c_4 below 0.15; seven photographs of brick,
+//! tile, walkway, reptile skin, nuts and gravel all break one of the rules, where a rule by c_2
+//! alone took four of them for lit from a side. **The three limits were set on these pictures**, so
+//! they are no evidence. On renderings made afterwards (24 random surfaces, random lights of 30–60°
+//! slant, 8 bits, random albedo) it finds 24 lights, off by at most 3.7°, and none in 48 pictures
+//! without one. The middle octaves' brightness must be as often above its mean as below it, within
+//! [`MOST_SKEWNESS`]: scratches all in one direction pass the other rules, but are bright lines on
+//! dark or the other way round. The spectral argument is Pentland's (IJCV 4, 1990); the rule is
+//! ours.
 //!
-//! What one image cannot tell: the sign of τ (hollows lit from below look like bumps lit from above; we
-//! take light from above, as viewers do) and the slant apart from albedo and steepness: a gentle relief under a low light
-//! and a steep one under a high light are one picture. [`ASSUMED_SLANT_RAD`] is taken, where contrast is slope; between 30° and 60°
-//! that is wrong by a factor of √3 at most.
+//! What one image cannot tell: the sign of τ (hollows lit from below look like bumps lit from
+//! above; we take light from above, as viewers do) and the slant apart from albedo and steepness: a
+//! gentle relief under a low light and a steep one under a high light are one picture.
+//! [`ASSUMED_SLANT_RAD`] is taken, where contrast is slope; between 30° and 60° that is wrong by a
+//! factor of √3 at most.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::raster::Raster;
@@ -41,7 +44,8 @@ pub const LEAST_AGREEMENT: f64 = 0.9;
 const OCTAVES: usize = 3;
 /// Slant of a light that was found, radians: 45°.
 pub const ASSUMED_SLANT_RAD: f64 = PI / 4.0;
-/// Skewness of an octave's brightness, either way, from which it is spots, scratches or shadows rather than slopes.
+/// Skewness of an octave's brightness, either way, from which it is spots, scratches or shadows
+/// rather than slopes.
 pub const MOST_SKEWNESS: f64 = 0.35;
 
 /// A distant light.
@@ -57,7 +61,8 @@ impl Light {
     /// From above left at 45°: what viewers assume, and the last resort where a light is needed.
     pub const ABOVE_LEFT: Self = Self { direction: [-0.5, -0.5, std::f64::consts::FRAC_1_SQRT_2] };
 
-    /// A light in this direction (of any length): x along u, y along v (downwards), z out of the surface.
+    /// A light in this direction (of any length): x along u, y along v (downwards), z out of the
+    /// surface.
     ///
     /// # Errors
     /// When it is not finite or not above the surface.
@@ -69,7 +74,8 @@ impl Light {
         Ok(Self { direction: direction.map(|c| c / length) })
     }
 
-    /// A light at an angle from the normal and a direction in the surface (from u towards v), radians.
+    /// A light at an angle from the normal and a direction in the surface (from u towards v),
+    /// radians.
     ///
     /// # Errors
     /// When the slant is not within 0–π/2, or a number is not finite.

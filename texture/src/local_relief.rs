@@ -4,9 +4,9 @@
 //! P(cell) = Σ over lags s   mean over the cell of  max over u, v of  ((h(−2s) − 4h(−s) + 6h − 4h(s) + h(2s)) / 16)²
 //! s       = 1, 2, 4, … texels up to 2 mm
 //! ```
-//! A fourth difference is the whole amplitude of a wave of 2 s and nothing of a plain or of a hill: of one of 47 mm
-//! it keeps 3·10⁻⁴ at 2 mm. So P is the mean square of what the map has between two texels and about 4 mm, and 0
-//! where it is flat, whatever its resolution.
+//! A fourth difference is the whole amplitude of a wave of 2 s and nothing of a plain or of a hill:
+//! of one of 47 mm it keeps 3·10⁻⁴ at 2 mm. So P is the mean square of what the map has between two
+//! texels and about 4 mm, and 0 where it is flat, whatever its resolution.
 
 use crate::height_field::PowerKind;
 use crate::raster::Raster;
@@ -45,7 +45,8 @@ impl LocalRelief {
         Self { power_m2, cells_per_m: [width as f64 / size_m[0], height as f64 / size_m[1]], wrap }
     }
 
-    /// Adds P at each place, m²: between the four nearest cells, which a finger shares for many samples.
+    /// Adds P at each place, m²: between the four nearest cells, which a finger shares for many
+    /// samples.
     pub fn add_along(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
         let mut corners = Corners { left: f64::NAN, top: f64::NAN, rows_m2: [[0.0; 2]; 2] };
         for (position_m, power_m2) in position_m.iter().zip(power_m2) {
@@ -57,7 +58,8 @@ impl LocalRelief {
         }
     }
 
-    /// Relief, added to nothing, of places between two corners; not one by one where all of it is 0, or `fills_m2` and more.
+    /// Relief, added to nothing, of places between two corners; not one by one where all of it is
+    /// 0, or `fills_m2` and more.
     pub fn along(
         &self,
         position_m: &[[f64; 2]],
@@ -72,7 +74,8 @@ impl LocalRelief {
             if corners.hold(x, y) && corners.hold(far_x, far_y) {
                 // All of them lie between the same four.
                 let [[a, b], [c, d]] = corners.rows_m2;
-                // What lies between four numbers misses their range by the rounding of its sum at most.
+                // What lies between four numbers misses their range by the rounding of its sum at
+                // most.
                 if [a, b, c, d].iter().all(|power_m2| *power_m2 >= (1.0 + 1e-12) * fills_m2) {
                     return PowerKind::Full;
                 }
@@ -128,7 +131,8 @@ impl Corners {
     }
 }
 
-/// Adds one lag's mean squares to the cells; looks at every texel of short lags, at every half lag of long ones.
+/// Adds one lag's mean squares to the cells; looks at every texel of short lags, at every half lag
+/// of long ones.
 fn add_lag(heights: &Raster, lag: usize, wrap: Wrap, power: &mut [f64], cells: [usize; 2]) {
     let (w, h) = (heights.width, heights.height);
     let stride = (lag / 2).max(1).min(w.div_ceil(cells[0])).min(h.div_ceil(cells[1]));

@@ -1,14 +1,16 @@
 //! Moving picture: heights of a surface that changes, tile by tile, for whoever draws it.
 //!
-//! The simulation writes tiles that changed, a reader takes those it has not seen; neither waits. What is drawn is always the latest:
-//! a reader that comes late loses what lay between, and is told how many states of tiles that was.
+//! The simulation writes tiles that changed, a reader takes those it has not seen; neither waits.
+//! What is drawn is always the latest: a reader that comes late loses what lay between, and is told
+//! how many states of tiles that was.
 //!
 //! ```text
 //! writer: version + 1 (odd) → heights → version + 1 (even)     reader: version even? → copy → same version?
 //! ```
 //!
-//! A sequence lock a tile: a tile that changes while it is copied is taken the next time. The heights are made when a reader first asks,
-//! on its own thread; until then a picture costs its writer one look a frame.
+//! A sequence lock a tile: a tile that changes while it is copied is taken the next time. The
+//! heights are made when a reader first asks, on its own thread; until then a picture costs its
+//! writer one look a frame.
 
 use crate::changed_tiles::ChangedTiles;
 pub use crate::changed_tiles::TILE_CELLS;
@@ -78,8 +80,9 @@ impl MovingPicture {
         self.shown.get_or_init(|| Shown { heights: words(cells), versions: words(tiles) });
     }
 
-    /// Height of the cell at a place as it was written last, of the nearest one beyond the edge, m; none before a picture was written. It
-    /// neither waits nor allocates; two cells may be of two frames.
+    /// Height of the cell at a place as it was written last, of the nearest one beyond the edge, m;
+    /// none before a picture was written. It neither waits nor allocates; two cells may be of two
+    /// frames.
     #[must_use]
     pub fn height_at(&self, position_m: [f64; 2]) -> Option<f64> {
         let shown = self.shown.get()?;
@@ -104,9 +107,10 @@ impl MovingPicture {
         }
     }
 
-    /// Writes the tiles that differ from what the picture shows, of a surface whose cells lie at `height_m(column, row)`, m. Tells
-    /// how many were written. Only `changed` tiles are looked at, and those that were never shown; the marks are then taken away. There
-    /// is one writer; nothing is written before somebody looks.
+    /// Writes the tiles that differ from what the picture shows, of a surface whose cells lie at
+    /// `height_m(column, row)`, m. Tells how many were written. Only `changed` tiles are looked at,
+    /// and those that were never shown; the marks are then taken away. There is one writer; nothing
+    /// is written before somebody looks.
     pub fn write(&self, changed: &mut ChangedTiles, height_m: impl Fn(usize, usize) -> f32) -> usize {
         let Some(shown) = self.shown.get() else { return 0 };
         let is_new = |tile: usize| shown.versions[tile].load(Ordering::Relaxed) == 0;

@@ -1,6 +1,7 @@
 //! Decoded pictures: rows of pixels of one to four channels, and one channel of them as a map.
 //!
-//! Nothing here decodes a file, so that a game that has its textures in memory already hands them over as they are.
+//! Nothing here decodes a file, so that a game that has its textures in memory already hands them
+//! over as they are.
 
 mod brightness;
 mod ignored;
@@ -83,7 +84,8 @@ impl Samples {
     }
 }
 
-/// A decoded picture: 1 channel is grey, 2 grey and alpha, 3 red, green and blue, 4 the same and alpha.
+/// A decoded picture: 1 channel is grey, 2 grey and alpha, 3 red, green and blue, 4 the same and
+/// alpha.
 ///
 /// ```
 /// use asperity_texture::picture::{Channel, Picture, Samples};
@@ -102,7 +104,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of `width` × `height` pixels; how many channels it has follows from the number of samples.
+    /// A picture of `width` × `height` pixels; how many channels it has follows from the number of
+    /// samples.
     ///
     /// # Errors
     /// When there are no pixels, too many, or samples that are not one to four a pixel.
@@ -122,8 +125,9 @@ impl Picture {
         Ok(Self { width: width as usize, height: height as usize, channels, samples, luma: Luma::default() })
     }
 
-    /// The same picture, whose brightness is that of a JPEG: 0.299 R + 0.587 G + 0.114 B, which is what the file holds beside two colours that are
-    /// coarser. By other weights, the colours' errors would be brightness.
+    /// Picture whose brightness is that of a JPEG: 0.299 R + 0.587 G + 0.114 B, which is what the
+    /// file holds beside two colours that are coarser. By other weights, the colours' errors would
+    /// be brightness.
     #[must_use]
     pub fn of_jpeg(self) -> Self {
         Self { luma: Luma::Jpeg, ..self }
@@ -135,7 +139,8 @@ impl Picture {
         [self.width, self.height]
     }
 
-    /// One channel as a map of a surface: [`channel`](Self::channel), but the brightness of a normal map is no map of anything.
+    /// One channel as a map of a surface: [`channel`](Self::channel), but the brightness of a
+    /// normal map is no map of anything.
     ///
     /// # Errors
     /// As [`channel`](Self::channel), and [`Problem::IsNormalMap`].
@@ -294,8 +299,8 @@ pub enum Problem {
     Empty,
 }
 
-/// The channel of integer pixels as 0–1, and the distance of its levels: the greatest number of which
-/// every level is a multiple.
+/// The channel of integer pixels as 0–1, and the distance of its levels: the greatest number of
+/// which every level is a multiple.
 fn integers(
     samples: impl Iterator<Item = u16>,
     [texels, channels]: [usize; 2],

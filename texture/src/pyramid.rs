@@ -1,4 +1,5 @@
-//! Complex steerable pyramid in the Fourier domain: an image as bands of wavelength and orientation.
+//! Complex steerable pyramid in the Fourier domain: an image as bands of wavelength and
+//! orientation.
 //!
 //! With r = √(ωx² + ωy²) the angular frequency in radians per texel and θ its direction,
 //! ```text
@@ -14,17 +15,19 @@
 //! | μ = 0 … K−1 | [`Kind::Oriented`] `orientation`: the wave runs along πμ/K from the u axis towards v |
 //! | S, K | [`Pyramid::new`] `bands`, `orientations` |
 //!
-//! Source: document 002 names "a complex steerable filter sequence" by band and orientation and leaves
-//! the functions open; they are those of E. P. Simoncelli and W. T. Freeman, "The steerable pyramid: a
-//! flexible architecture for multi-scale derivative computation", ICIP 1995, and J. Portilla and
-//! E. P. Simoncelli, IJCV 40, 2000. The squares sum to one at every frequency (a tight frame), so the
-//! same filters put the image together again: I = Σ Ψ · (Ψ I), exactly, at any size, odd ones too.
+//! Source: document 002 names "a complex steerable filter sequence" by band and orientation and
+//! leaves the functions open; they are those of E. P. Simoncelli and W. T. Freeman, "The steerable
+//! pyramid: a flexible architecture for multi-scale derivative computation", ICIP 1995, and J.
+//! Portilla and E. P. Simoncelli, IJCV 40, 2000. The squares sum to one at every frequency (a tight
+//! frame), so the same filters put the image together again: I = Σ Ψ · (Ψ I), exactly, at any size,
+//! odd ones too.
 //!
-//! Changed: the filters are evaluated, not looked up (pyrtools stops at 110 dB for its tables, and at
-//! 44 dB for odd sizes). A real sub-band is the real part of the complex one, as in the document;
-//! images and sub-bands are transformed as what they are, real, and filters known by half of the plane. [`Sampling::Reduced`] keeps the samples that a
-//! band needs by its bandwidth and no more; its values are those of the full band at fewer places.
-//! [`Sampling::Full`] is the document's: every band as large as the image.
+//! Changed: the filters are evaluated, not looked up (pyrtools stops at 110 dB for its tables, and
+//! at 44 dB for odd sizes). A real sub-band is the real part of the complex one, as in the
+//! document; images and sub-bands are transformed as what they are, real, and filters known by half
+//! of the plane. [`Sampling::Reduced`] keeps the samples that a band needs by its bandwidth and no
+//! more; its values are those of the full band at fewer places. [`Sampling::Full`] is the
+//! document's: every band as large as the image.
 
 mod coefficients;
 mod filter;
@@ -133,8 +136,8 @@ impl Pyramid {
         Ok(pyramid)
     }
 
-    /// The sub-bands in the order of [`Coefficients`]: high residual, bands from fine to coarse with
-    /// their orientations, low residual.
+    /// The sub-bands in the order of [`Coefficients`]: high residual, bands from fine to coarse
+    /// with their orientations, low residual.
     #[must_use]
     pub fn subbands(&self) -> &[Subband] {
         &self.subbands
@@ -345,15 +348,16 @@ impl Pyramid {
         });
     }
 
-    /// Sums of squares and products of one sub-band of two images with these half spectra: Σ a², Σ a b, Σ b², times the number
-    /// of texels.
+    /// Sums of squares and products of one sub-band of two images with these half spectra: Σ a², Σ
+    /// a b, Σ b², times the number of texels.
     pub(crate) fn powers(&self, a: &[Complex64], b: &[Complex64], index: usize) -> [f64; 3] {
         let filter = &self.filters[index];
         let (width, height) = (self.width(), self.height());
         let mut sums = [0.0; 3];
         for ((place, _), gain) in self.levels[filter.level].frequencies(width).zip(&filter.gains) {
             let kx = place / height;
-            // Half the spectrum stands for both halves, but for the columns that are their own mirror images.
+            // Half the spectrum stands for both halves, but for the columns that are their own
+            // mirror images.
             let weight = if (2 * kx).is_multiple_of(width) { gain * gain } else { 2.0 * gain * gain };
             let (a, b) = (a[place], b[place]);
             sums[0] += weight * a.norm_sqr();
@@ -363,7 +367,8 @@ impl Pyramid {
         sums
     }
 
-    /// Adds to `sum` the cross spectrum of one sub-band of two images with these half spectra, Ψ² A B*, times `gain`.
+    /// Adds to `sum` the cross spectrum of one sub-band of two images with these half spectra, Ψ² A
+    /// B*, times `gain`.
     pub(crate) fn add_cross_spectrum(
         &self,
         [a, b]: [&[Complex64]; 2],

@@ -59,7 +59,8 @@ impl Raster {
         Self { width: self.width, height: self.height, values }
     }
 
-    /// By how much a side of `width` × `height` texels is divided so that at most `most_texels` are left.
+    /// By how much a side of `width` × `height` texels is divided so that at most `most_texels` are
+    /// left.
     #[cfg(feature = "offline")]
     pub(crate) fn reduction(width: usize, height: usize, most_texels: usize) -> usize {
         (1..=width.min(height)).find(|n| (width / n) * (height / n) <= most_texels).unwrap_or(1)

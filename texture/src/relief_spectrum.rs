@@ -10,8 +10,9 @@
 //! | σ | blur of lens and demosaicing, texels, 0 … [`MOST_BLUR_PX`]: so that R is the surface's and not the lens' |
 //! | α | Hasti's exponent of the overlay, α = 2.5 − 1.5 R |
 //!
-//! The engine's overlay begins where a map ends, at two texels, so its level is taken at the map's fine end
-//! ([`FINE_OCTAVE_PX`]) and carried to the octave at 1 mm, where it is told, by the overlay's own law: both join.
+//! The engine's overlay begins where a map ends, at two texels, so its level is taken at the map's
+//! fine end ([`FINE_OCTAVE_PX`]) and carried to the octave at 1 mm, where it is told, by the
+//! overlay's own law: both join.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::signed_bin;
@@ -72,8 +73,8 @@ impl ReliefSpectrum {
         ((7.0 - self.exponent) / 2.0).clamp(2.0, 3.0)
     }
 
-    /// Rms of a profile in the octave at 1 mm that makes the engine's overlay continue this relief below two texels, in texels
-    /// of height, for texels of `texel_m`.
+    /// Rms of a profile in the octave at 1 mm that makes the engine's overlay continue this relief
+    /// below two texels, in texels of height, for texels of `texel_m`.
     #[must_use]
     pub fn micro_relief_px(&self, texel_m: f64) -> f64 {
         let (low, high) = (1.0 / (FINE_OCTAVE_PX * SQRT_2), SQRT_2 / FINE_OCTAVE_PX);
@@ -85,7 +86,8 @@ impl ReliefSpectrum {
         rms * (MICRO_WAVELENGTH_M / (FINE_OCTAVE_PX * texel_m)).powf(0.5 * (overlay - 1.0))
     }
 
-    /// R place by place: the whole relief's, moved by how the octaves at 6 and 12 texels compare there.
+    /// R place by place: the whole relief's, moved by how the octaves at 6 and 12 texels compare
+    /// there.
     #[must_use]
     pub fn roughness_map(&self, heights_px: &Raster) -> Raster {
         let (w, h) = (heights_px.width, heights_px.height);

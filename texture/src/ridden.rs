@@ -3,11 +3,14 @@
 //! ```text
 //! z(x) = max over y of h(y) − |x − y|² / 2r
 //! ```
-//! The paraboloid stands for the sphere of radius r near its lowest point, which is where it touches as long as the relief is small beside
-//! r; it makes the dilation separable, rows and then columns, and exact. Each line is the upper envelope of its parabolas, found in one
-//! pass (P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8, 2012).
+//! The paraboloid stands for the sphere of radius r near its lowest point, which is where it
+//! touches as long as the relief is small beside r; it makes the dilation separable, rows and then
+//! columns, and exact. Each line is the upper envelope of its parabolas, found in one pass (P.
+//! Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing
+//! 8, 2012).
 //!
-//! A rigid tip never reaches the ground of a valley sharper than itself; on random grains that takes 6–13 dB off a tool's acceleration.
+//! A rigid tip never reaches the ground of a valley sharper than itself; on random grains that
+//! takes 6–13 dB off a tool's acceleration.
 
 use crate::raster::Raster;
 use crate::wrap::Wrap;

@@ -21,8 +21,9 @@
 //! | [`worker`] | the other end of the hand-over, on a thread of its own |
 //!
 //! Source: Beneš, Dorjgotov, Arns & Bertoline, "Granular Material Interactive Manipulation" (2006).
-//! What we read differently or changed is said in each file. The authors' open points that are ours:
-//! arbitrary tools, correct volume, wetness, layers, stones and shells, and that sand is heard.
+//! What we read differently or changed is said in each file. The authors' open points that are
+//! ours: arbitrary tools, correct volume, wetness, layers, stones and shells, and that sand is
+//! heard.
 
 mod around;
 pub mod buried;

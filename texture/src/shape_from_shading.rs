@@ -12,23 +12,24 @@
 //!
 //! Four ways to z, [`Method`]:
 //!
-//! *Integrable* (default for directed light). Each step moves p, q along the gradient of R until R would be
-//! I, `(p, q) += (I − R) ∇R / (|∇R|² + μ)`, and projects them onto the slopes of a surface
-//! ([`crate::gradient_field`]; R. T. Frankot and R. Chellappa, IEEE PAMI 10, 1988). It starts from the
-//! solution for gentle slopes, which is linear (A. P. Pentland, IJCV 4, 1990).
+//! *Integrable* (default for directed light). Each step moves p, q along the gradient of R until R
+//! would be I, `(p, q) += (I − R) ∇R / (|∇R|² + μ)`, and projects them onto the slopes of a surface
+//! ([`crate::gradient_field`]; R. T. Frankot and R. Chellappa, IEEE PAMI 10, 1988). It starts from
+//! the solution for gentle slopes, which is linear (A. P. Pentland, IJCV 4, 1990).
 //!
-//! *Tsai–Shah* (document 004 §8.1.2; P.-S. Tsai and M. Shah, Image and Vision Computing 12, 1994), Jacobi
-//! steps `Z ← Z − f/f'` with f = I − R, backward differences and
-//! `f' = (s_x + s_y)/√w + (p + q)(−s_x p − s_y q + s_z)/w^1.5`, w = 1 + p² + q². Measured: the first step is
-//! an affine copy of the negative image, whatever the surface; correlation with known heights stays
-//! below 0.35, against 0.4–0.99 for the integrable solver. Kept because the document used it. Under
-//! frontal light f' is 0 at the start; |f'| is kept above 0.01 (ours).
+//! *Tsai–Shah* (document 004 §8.1.2; P.-S. Tsai and M. Shah, Image and Vision Computing 12, 1994),
+//! Jacobi steps `Z ← Z − f/f'` with f = I − R, backward differences and `f' = (s_x + s_y)/√w + (p +
+//! q)(−s_x p − s_y q + s_z)/w^1.5`, w = 1 + p² + q². Measured: the first step is an affine copy of
+//! the negative image, whatever the surface; correlation with known heights stays below 0.35,
+//! against 0.4–0.99 for the integrable solver. Kept because the document used it. Under frontal
+//! light f' is 0 at the start; |f'| is kept above 0.01 (ours).
 //!
-//! *Dark is deep* (default for diffuse or frontal light): a wave of brightness is a wave of height, as steep as it has
-//! contrast, [`dark_is_deep`](mod@crate::dark_is_deep).
+//! *Dark is deep* (default for diffuse or frontal light): a wave of brightness is a wave of height,
+//! as steep as it has contrast, [`dark_is_deep`](mod@crate::dark_is_deep).
 //!
-//! *Flat ground* (default for frontal light where there is a ground): light from the viewer's direction (less than [`LEAST_SLANT_RAD`]) tells
-//! how steep a place is and not which way, [`crate::flat_ground`]. Without a ground, dark is deep is used, and said.
+//! *Flat ground* (default for frontal light where there is a ground): light from the viewer's
+//! direction (less than [`LEAST_SLANT_RAD`]) tells how steep a place is and not which way,
+//! [`crate::flat_ground`]. Without a ground, dark is deep is used, and said.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::dark_is_deep::dark_is_deep;
@@ -73,15 +74,17 @@ pub struct Shape {
     pub height_px: Raster,
     /// Method that found them.
     pub method: Method,
-    /// The light that was used; `None` for [`Method::DarkIsDeep`], from the viewer for [`Method::FlatGround`].
+    /// The light that was used; `None` for [`Method::DarkIsDeep`], from the viewer for
+    /// [`Method::FlatGround`].
     pub light: Option<Light>,
-    /// Part of the image that the surface, lit by that light, does not explain: root mean square error over
-    /// the image's standard deviation. `None` but for [`Method::Integrable`].
+    /// Part of the image that the surface, lit by that light, does not explain: root mean square
+    /// error over the image's standard deviation. `None` but for [`Method::Integrable`].
     pub unexplained: Option<f64>,
 }
 
-/// Heights by the recommended method: with the given light, or the one found in the image, or dark is
-/// deep when there is none in it or it comes from the viewer's direction. `progress` is told the fraction done.
+/// Heights by the recommended method: with the given light, or the one found in the image, or dark
+/// is deep when there is none in it or it comes from the viewer's direction. `progress` is told the
+/// fraction done.
 ///
 /// # Errors
 /// As [`shape_by`].
@@ -103,8 +106,8 @@ pub fn shape_from_shading(
 /// [`Method::DarkIsDeep`] and [`Method::FlatGround`].
 ///
 /// # Errors
-/// When the image is smaller than 8 × 8 or holds numbers that are not finite, the integrable solver is to use light from the
-/// viewer's direction, or there is no flat ground.
+/// When the image is smaller than 8 × 8 or holds numbers that are not finite, the integrable solver
+/// is to use light from the viewer's direction, or there is no flat ground.
 pub fn shape_by(
     method: Method,
     image: &Raster,

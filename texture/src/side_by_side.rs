@@ -1,4 +1,5 @@
-//! Two halves of an offline tool's work side by side, where the system has threads (a browser's page has none).
+//! Two halves of an offline tool's work side by side, where the system has threads (a browser's
+//! page has none).
 
 /// Both results; the first is found on another thread where there is one.
 pub(crate) fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {

@@ -14,11 +14,12 @@
 //! which makes sandpaper's cell 0.2 mm and pebbles' 10 mm. The lacunarity is not given either; ours
 //! is 2. Wood: the text has two modules (low rings, high grain) and the magnitude of sandpaper and
 //! glass, the table one row with M = 1; the preset is the table's row as grain and rings that bring
-//! the magnitude to 3, and [`SolidMaterial::WoodAsPrinted`] is the row alone. A is ours: hard ground
-//! or grown surfaces stay within ±50 µm, loose grains reach the size of what is lying there (sand
-//! 0.1 mm, gravel 0.4 mm, pebbles 1 mm). L = 0.1 N per unit of magnitude keeps pebbles, the strongest,
-//! at the 1 N cap; the seven keep the proportions of Table 1. The paper's pebbles lie "in a viscous
-//! cube" whose viscosity is not printed; in Table 1 they differ from granite by the magnitude alone.
+//! the magnitude to 3, and [`SolidMaterial::WoodAsPrinted`] is the row alone. A is ours: hard
+//! ground or grown surfaces stay within ±50 µm, loose grains reach the size of what is lying there
+//! (sand 0.1 mm, gravel 0.4 mm, pebbles 1 mm). L = 0.1 N per unit of magnitude keeps pebbles, the
+//! strongest, at the 1 N cap; the seven keep the proportions of Table 1. The paper's pebbles lie
+//! "in a viscous cube" whose viscosity is not printed; in Table 1 they differ from granite by the
+//! magnitude alone.
 
 use crate::solid_noise::{ForceDirection, NoiseModule, SolidNoiseParameters};
 
@@ -28,9 +29,10 @@ pub const TEXTURE_FACTOR_PER_M: f64 = 100.0;
 pub const LIMIT_N: f64 = 0.1;
 /// Largest texture force, N (ours; the paper only says that there is one).
 pub const CAP_N: f64 = 1.0;
-/// Viscosity of the medium around the pebbles, N·s/m (ours). It was chosen on the strokes of the test
-/// `seven_materials`: 0.99 of them are named rightly by their force alone, with 2 only 0.93, without 0.84.
-/// On strokes and pieces that it was not chosen by (example `materials_blind`) it is 0.97.
+/// Viscosity of the medium around the pebbles, N·s/m (ours). It was chosen on the strokes of the
+/// test `seven_materials`: 0.99 of them are named rightly by their force alone, with 2 only 0.93,
+/// without 0.84. On strokes and pieces that it was not chosen by (example `materials_blind`) it is
+/// 0.97.
 pub const PEBBLES_VISCOSITY_N_S_M: f64 = 5.0;
 /// Friction of rough glass (ours: the paper says "very small").
 pub const GLASS_FRICTION: f64 = 0.1;

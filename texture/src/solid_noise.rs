@@ -16,12 +16,12 @@
 //! | x | [`SolidCut`]: where the surface cuts the block, or the place in the body that a contact tells; less the way that the block has
 //! [flowed](SolidNoiseParameters::flow_m_s), as the document's water and wind do |
 //!
-//! Source: the solid-noise paper, equations 3 and 4 and Table 1. What we read differently: the printed
-//! sum has one octave more than the table counts (N octaves are N terms), and the printed argument
-//! p · (1/lac)^i is a period, so the frequency is f · lac^i. What we changed: octaves fade out where
-//! the contact's footprint no longer resolves them; the block is cut at a slant, because a cut along
-//! the lattice meets a zero of the noise at every cell border, which sounds as a tone; parameters
-//! change by a fade ([`crate::fade`]).
+//! Source: the solid-noise paper, equations 3 and 4 and Table 1. What we read differently: the
+//! printed sum has one octave more than the table counts (N octaves are N terms), and the printed
+//! argument p · (1/lac)^i is a period, so the frequency is f · lac^i. What we changed: octaves fade
+//! out where the contact's footprint no longer resolves them; the block is cut at a slant, because
+//! a cut along the lattice meets a zero of the noise at every cell border, which sounds as a tone;
+//! parameters change by a fade ([`crate::fade`]).
 
 mod cut;
 mod force;
@@ -38,8 +38,8 @@ use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
 use std::any::Any;
 
-/// Footprint over cell size up to which an octave is whole: 0.66 cycles per cell, below which 90 % of
-/// its energy lies, then stay under 0.26 of the sample rate.
+/// Footprint over cell size up to which an octave is whole: 0.66 cycles per cell, below which 90 %
+/// of its energy lies, then stay under 0.26 of the sample rate.
 const FOOTPRINT_WHOLE: f64 = 0.4;
 /// Footprint over cell size from which an octave is silent: 0.66 cycles per cell reach the Nyquist
 /// frequency.

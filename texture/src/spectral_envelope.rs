@@ -10,14 +10,17 @@
 //! | r, θ | frequency and direction of a wave; waves of opposite direction are one |
 //! | b | [`PER_OCTAVE`] rings an octave by [`DIRECTIONS`] |
 //!
-//! The envelope and the autocorrelation over short lags are one another's Fourier transforms; imposing the second by
-//! changing amplitudes alone, as J. Portilla and E. P. Simoncelli do (IJCV 40, 2000, §2.3), is imposing the first.
-//! Tents over log r instead of lags: touch resolves ratios of frequency, and fingers move at many speeds.
+//! The envelope and the autocorrelation over short lags are one another's Fourier transforms;
+//! imposing the second by changing amplitudes alone, as J. Portilla and E. P. Simoncelli do (IJCV
+//! 40, 2000, §2.3), is imposing the first. Tents over log r instead of lags: touch resolves ratios
+//! of frequency, and fingers move at many speeds.
 //!
-//! Measured (machine ABX, `asperity texture compare`, metamers of four textures and their reference): octave-wide sub-bands
-//! alone leave 0.78 (synthetic), 0.72 (displacement maps) and 0.62 (photographs), all of it by the spectrum within the bands;
-//! with third-octave tents 0.50–0.56, which is next to chance. Finer tents (6 an octave by 8) gain nothing more and spoil the arrangement
-//! of regular originals, whose few waves have to be made to fill every tent; three directions leave 0.60.
+//! Measured (machine ABX, `asperity texture compare`, metamers of four textures and their
+//! reference): octave-wide sub-bands alone leave 0.78 (synthetic), 0.72 (displacement maps) and
+//! 0.62 (photographs), all of it by the spectrum within the bands; with third-octave tents
+//! 0.50–0.56, which is next to chance. Finer tents (6 an octave by 8) gain nothing more and spoil
+//! the arrangement of regular originals, whose few waves have to be made to fill every tent; three
+//! directions leave 0.60.
 
 use crate::fft2::angular_frequency;
 use asperity_fft::num_complex::Complex64;
@@ -62,8 +65,8 @@ impl Place {
 /// One number a tent: rings of directions.
 type Tents = Vec<[f64; DIRECTIONS]>;
 
-/// The tents on the spectra of images of one size: on columns 0 … width/2 of what [`crate::fft2::Fft2`] gives, which
-/// determine the others.
+/// The tents on the spectra of images of one size: on columns 0 … width/2 of what
+/// [`crate::fft2::Fft2`] gives, which determine the others.
 #[derive(Debug, Clone)]
 pub struct Envelope {
     places: Vec<Place>,
@@ -83,8 +86,9 @@ impl Envelope {
         envelope
     }
 
-    /// Power in each tent: variance per frequency interval, the same for images of any size; negative
-    /// where an image of this size has no wave. Columns of `spectrum` after the first half are not read.
+    /// Power in each tent: variance per frequency interval, the same for images of any size;
+    /// negative where an image of this size has no wave. Columns of `spectrum` after the first half
+    /// are not read.
     ///
     /// # Panics
     /// When `spectrum` is not that of an image of this size.
@@ -97,8 +101,9 @@ impl Envelope {
         sums.as_flattened().iter().zip(self.weights.as_flattened()).map(of).collect()
     }
 
-    /// Changes the amplitudes of half a spectrum (columns 0 … width/2) so that the envelope comes nearer to `wanted`,
-    /// which may come from an image of another size, by at most a factor `most` either way. Phases stay.
+    /// Changes the amplitudes of half a spectrum (columns 0 … width/2) so that the envelope comes
+    /// nearer to `wanted`, which may come from an image of another size, by at most a factor `most`
+    /// either way. Phases stay.
     ///
     /// # Panics
     /// When `spectrum` is not half that of an image of this size.
@@ -121,7 +126,8 @@ impl Envelope {
         }
     }
 
-    /// The envelope `power` for waves up to `longest_px` texels long, and nothing to impose for longer ones.
+    /// The envelope `power` for waves up to `longest_px` texels long, and nothing to impose for
+    /// longer ones.
     #[must_use]
     pub(crate) fn only_below(power: &[f64], longest_px: f64) -> Vec<f64> {
         let first = ring(TAU / longest_px) as usize * DIRECTIONS;

@@ -26,8 +26,8 @@ pub fn resample(image: &Raster, width: usize, height: usize) -> Raster {
     Fft2::new(width, height).image(&mut to)
 }
 
-/// The image on `width` × `height` texels, taken to end at its borders: it is resampled together with its mirror images,
-/// which meet it without a step.
+/// The image on `width` × `height` texels, taken to end at its borders: it is resampled together
+/// with its mirror images, which meet it without a step.
 #[must_use]
 pub fn resample_mirrored(image: &Raster, width: usize, height: usize) -> Raster {
     let (w, h) = (image.width, image.height);

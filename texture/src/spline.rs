@@ -3,10 +3,11 @@
 //! ```text
 //! h(t) = Σ c_k β³(t − k)      c: chosen so that h(i) = texel i      t: texels, centres at integers
 //! ```
-//! The coefficients c come from the two recursions c⁺ᵢ = sᵢ + z c⁺ᵢ₋₁, cᵢ = z (cᵢ₊₁ − c⁺ᵢ), z = √3 − 2, gain 6
-//! (M. Unser, "Splines: a perfect fit for signal and image processing", IEEE SPM 1999), run along rows
-//! and columns over the map as it goes on beyond its edges. Why: over 12.8 texels a period a stroke's
-//! velocity is clean to 63 dB; bilinear interpolation buzzes at the texel rate (17 dB).
+//! The coefficients c come from the two recursions c⁺ᵢ = sᵢ + z c⁺ᵢ₋₁, cᵢ = z (cᵢ₊₁ − c⁺ᵢ), z = √3
+//! − 2, gain 6 (M. Unser, "Splines: a perfect fit for signal and image processing", IEEE SPM 1999),
+//! run along rows and columns over the map as it goes on beyond its edges. Why: over 12.8 texels a
+//! period a stroke's velocity is clean to 63 dB; bilinear interpolation buzzes at the texel rate
+//! (17 dB).
 
 mod cell;
 mod place;
@@ -32,7 +33,8 @@ const SETTLE: usize = 40;
 /// Coefficients kept beyond each edge, so that any 4 × 4 neighbourhood is contiguous. A clamped map
 /// needs more: its slope beyond the edge falls by |z| a texel until it is cut off at `REACH`.
 const PAD: usize = 14;
-/// Distance beyond the first and last texel centre at which a clamped map is still evaluated, texels.
+/// Distance beyond the first and last texel centre at which a clamped map is still evaluated,
+/// texels.
 const REACH: f64 = 12.0;
 
 /// Coefficients are asked for ahead of a stroke over so many texels a block at most.
@@ -82,10 +84,11 @@ impl Spline {
         Raster::from_fn(width, height, at)
     }
 
-    /// The value, and the slope if `SLOPES`, at each of up to [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions; (0, 0)
-    /// is the top left corner of the map. The bits are those of each position alone. `places` are found on the way,
-    /// unless a map of the same grid has done so for the same positions. Where the corners are known that all positions lie between, one cell
-    /// that holds both is found from them.
+    /// The value, and the slope if `SLOPES`, at each of up to
+    /// [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions; (0, 0) is the top left corner of
+    /// the map. The bits are those of each position alone. `places` are found on the way, unless a
+    /// map of the same grid has done so for the same positions. Where the corners are known that
+    /// all positions lie between, one cell that holds both is found from them.
     pub fn sample_block<const SLOPES: bool>(
         &self,
         position_m: &[[f64; 2]],
@@ -100,8 +103,8 @@ impl Spline {
         );
     }
 
-    /// [`Self::sample_block`], N positions side by side. A slow finger stays in a cell for many samples, whose
-    /// polynomial is found once.
+    /// [`Self::sample_block`], N positions side by side. A slow finger stays in a cell for many
+    /// samples, whose polynomial is found once.
     #[inline(always)]
     fn sample_block_in_lanes<const N: usize, V: Vector<N>, R: Rows, const SLOPES: bool>(
         &self,
@@ -131,8 +134,8 @@ impl Spline {
         self.prefetch(rows, places);
     }
 
-    /// Says which coefficients the next block will probably need. Rows lie far apart in memory: a stroke down a large
-    /// map meets new ones all the time, and would wait for each.
+    /// Says which coefficients the next block will probably need. Rows lie far apart in memory: a
+    /// stroke down a large map meets new ones all the time, and would wait for each.
     #[inline(always)]
     fn prefetch<R: Rows>(&self, rows: R, places: &Places) {
         let Some((last, step)) = places.ahead() else { return };

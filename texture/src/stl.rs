@@ -3,10 +3,11 @@
 //! ```text
 //! x = u        y = depth − v        z = base + h(u, v) − lowest h
 //! ```
-//! The top has a vertex at every texel's centre and one at the edge beside every outermost texel, so that the block is exactly
-//! as wide as the map; walls go down to z = 0 and a fan closes the bottom. Seen from above it looks like the map.
-//! STL has no unit; printers read millimetres. Source: the embodiment of the metamers is an object of known thickness from a
-//! 3-D printer that resolves less than [`FINEST_TEXEL_M`].
+//! The top has a vertex at every texel's centre and one at the edge beside every outermost texel,
+//! so that the block is exactly as wide as the map; walls go down to z = 0 and a fan closes the
+//! bottom. Seen from above it looks like the map. STL has no unit; printers read millimetres.
+//! Source: the embodiment of the metamers is an object of known thickness from a 3-D printer that
+//! resolves less than [`FINEST_TEXEL_M`].
 //!
 //! ```
 //! use asperity_texture::{raster::Raster, stl::Block};
@@ -23,7 +24,8 @@ use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use std::io::{self, Write};
 
-/// Texels above this size, m, are felt as facets: the document prefers printers that are finer than 0.25 mm.
+/// Texels above this size, m, are felt as facets: the document prefers printers that are finer than
+/// 0.25 mm.
 pub const FINEST_TEXEL_M: f64 = 0.25e-3;
 /// Most triangles in a file: 5 GB.
 const MOST_TRIANGLES: u64 = 100_000_000;
@@ -42,10 +44,12 @@ pub struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// A block of texels `texel_m` wide (1 µm to 1 m) whose lowest point is `base_m` thick (1 µm to 1 m).
+    /// A block of texels `texel_m` wide (1 µm to 1 m) whose lowest point is `base_m` thick (1 µm to
+    /// 1 m).
     ///
     /// # Errors
-    /// When a size is outside its range, a height is not finite, or there are no texels or too many for a file.
+    /// When a size is outside its range, a height is not finite, or there are no texels or too many
+    /// for a file.
     pub fn new(heights_m: &'a Raster, texel_m: f64, base_m: f64) -> Result<Self, DesignError> {
         let is_size = |size: f64| (1e-6..=1.0).contains(&size);
         DesignError::check("texel_m", texel_m, "1e-6 to 1 (1 µm to 1 m)", is_size)?;
@@ -133,7 +137,8 @@ impl<'a> Block<'a> {
         rim
     }
 
-    /// A vertex of the top, mm: columns and rows 0 and n + 1 are the edges, those between the centres of texels.
+    /// A vertex of the top, mm: columns and rows 0 and n + 1 are the edges, those between the
+    /// centres of texels.
     fn top(&self, column: usize, row: usize) -> Vertex {
         let (w, h) = (self.heights_m.width, self.heights_m.height);
         let along = |at: usize, n: usize| (at as f64 - 0.5).clamp(0.0, n as f64) * self.texel_m;

@@ -1,13 +1,14 @@
-//! A tile cut from a source that never repeats: texture coordinates that wrap come back to the same place.
+//! A tile cut from a source that never repeats: texture coordinates that wrap come back to the same
+//! place.
 //!
 //! ```text
 //! h(x) = (1 − w) n(x) + w n(x − W)      x: place within the tile, 0 to W
 //! w    = 6t⁵ − 15t⁴ + 10t³              t = (x − (W − b)) / b, 0 to 1 in the last b of the tile
 //! ```
-//! along u and along v. At the end of the tile the relief is that of its beginning, with slope and curvature, so
-//! there is no seam to be felt. b is the longest wavelength of the source, at most a quarter of the tile. The
-//! weights add up to 1 in height, so whatever does repeat (a map in a sum) stays what it is; uncorrelated relief is
-//! 3 dB lower in the middle of the blend.
+//! along u and along v. At the end of the tile the relief is that of its beginning, with slope and
+//! curvature, so there is no seam to be felt. b is the longest wavelength of the source, at most a
+//! quarter of the tile. The weights add up to 1 in height, so whatever does repeat (a map in a sum)
+//! stays what it is; uncorrelated relief is 3 dB lower in the middle of the blend.
 
 use crate::combine::Source;
 use crate::height_field::{
@@ -25,7 +26,8 @@ pub struct Place {
     pub slope_per_m: f64,
 }
 
-/// Distance to a tile's edge, against all lengths at hand, within which rounding might have a say: far more than it has.
+/// Distance to a tile's edge, against all lengths at hand, within which rounding might have a say:
+/// far more than it has.
 const EDGE: f64 = 1e-12;
 
 /// One axis of a tile.
@@ -54,7 +56,8 @@ impl TileAxis {
         self.inside(position_m - self.length_m * floor(position_m / self.length_m))
     }
 
-    /// [`Self::place`], to the bit, of one of many places in a row: `turn` is the number of the tile that the one before lay in.
+    /// [`Self::place`], to the bit, of one of many places in a row: `turn` is the number of the
+    /// tile that the one before lay in.
     #[inline]
     #[must_use]
     pub fn place_after(&self, position_m: f64, turn: &mut f64) -> Place {
@@ -71,8 +74,9 @@ impl TileAxis {
         self.inside(position_m - self.length_m * *turn)
     }
 
-    /// Beginning of the tile that all places from `low_m` to `high_m` lie in, well inside and before its blend: each is then
-    /// [at](Place::at_m) its distance from there, to the bit. None where they may lie otherwise.
+    /// Beginning of the tile that all places from `low_m` to `high_m` lie in, well inside and
+    /// before its blend: each is then [at](Place::at_m) its distance from there, to the bit. None
+    /// where they may lie otherwise.
     #[must_use]
     pub fn begin_of_all_m(&self, low_m: f64, high_m: f64) -> Option<f64> {
         if !self.length_m.is_finite() {

@@ -1,13 +1,14 @@
-//! Tip law: depth in, force out. What a surface that gives way answers to a device whose tip stands in it.
+//! Tip law: depth in, force out. What a surface that gives way answers to a device whose tip stands
+//! in it.
 //!
 //! ```text
 //! sand     F_z = k_s β (e^{k_c d} − 1),  F_xy = −k_f v F_z          the document's loop, |F| ≤ cap
 //! spring   F_z = d / C,                  F_xy = −μ F_z v / max(|v|, 1 mm/s)
 //! ```
 //!
-//! A plain value for the thread that drives the device: it needs no engine, waits for nothing, and gives what the engine's own force
-//! rows give for the same depth, without their delay. d is the depth below the surface as it lies, which for sand in its own furrow is
-//! lower than it was.
+//! A plain value for the thread that drives the device: it needs no engine, waits for nothing, and
+//! gives what the engine's own force rows give for the same depth, without their delay. d is the
+//! depth below the surface as it lies, which for sand in its own furrow is lower than it was.
 
 use crate::sand::SandLaw;
 
@@ -35,7 +36,8 @@ pub enum TipLaw {
 }
 
 impl TipLaw {
-    /// Force on the tip along u, v and out of the surface, N; none above the surface, and none of a depth that is no number. Always finite.
+    /// Force on the tip along u, v and out of the surface, N; none above the surface, and none of a
+    /// depth that is no number. Always finite.
     #[must_use]
     pub fn answer_n(&self, depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
         match self {
@@ -50,7 +52,8 @@ impl TipLaw {
         }
     }
 
-    /// [`answer_n`](Self::answer_n) at a place of the untouched surface, metres: over the [stones and shells](crate::sand::buried) of sand too.
+    /// [`answer_n`](Self::answer_n) at a place of the untouched surface, metres: over the [stones
+    /// and shells](crate::sand::buried) of sand too.
     #[must_use]
     pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
         match self {
@@ -59,8 +62,8 @@ impl TipLaw {
         }
     }
 
-    /// Growth of the force with the depth at a place of the untouched surface, N/m: [`stiffness_n_m`](Self::stiffness_n_m), and over a stone
-    /// the stone's.
+    /// Growth of the force with the depth at a place of the untouched surface, N/m:
+    /// [`stiffness_n_m`](Self::stiffness_n_m), and over a stone the stone's.
     #[must_use]
     pub fn stiffness_at_n_m(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
         let step_m = 1e-6;
@@ -69,7 +72,8 @@ impl TipLaw {
         (carried_n(depth_m + step_m) - carried_n(depth_m - step_m)) / (2.0 * step_m)
     }
 
-    /// Growth of the force with the depth, N/m: what a loop of period T can hold with a device that damps with b is at most 2 b / T.
+    /// Growth of the force with the depth, N/m: what a loop of period T can hold with a device that
+    /// damps with b is at most 2 b / T.
     #[must_use]
     pub fn stiffness_n_m(&self, depth_m: f64) -> f64 {
         match self {
@@ -99,7 +103,8 @@ mod tests {
         }
         assert_eq!(TipLaw::Sand(law).answer_n(0.0, [0.1, 0.1]), [0.0; 3]);
         assert!((TipLaw::Sand(law).stiffness_n_m(0.003) / 1003.0 - 1.0).abs() < 1e-4);
-        // 0.5 m/s at 5 N would drag with 50 N; no device gives more than it can, in the direction of the force.
+        // 0.5 m/s at 5 N would drag with 50 N; no device gives more than it can, in the direction
+        // of the force.
         let [u, v, z] = TipLaw::Sand(law).answer_n(0.005, [0.5, 0.0]);
         assert!((u.hypot(z) - 20.0).abs() < 1e-9 && v == 0.0 && (u / z + 10.0).abs() < 1e-9);
     }

@@ -1,31 +1,37 @@
-//! Places on a surface for bodies that have no uv of their own: three planar projections, and one path among them.
+//! Places on a surface for bodies that have no uv of their own: three planar projections, and one
+//! path among them.
 //!
 //! ```text
 //! plane x: uv = (y, z)    plane y: uv = (z, x)    plane z: uv = (x, y)        body coordinates, m
 //! w_i = (|n_i| − δ)₊^k / Σ                       weights from the surface's normal n
 //! ```
-//! Source: the texture-analysis thesis §4.2.3.1 (planar multiple projection: a triangle belongs to the plane its normal
-//! is nearest to, sign left aside), which names its own fault: the texture jumps where the plane changes. What we changed:
+//! Source: the texture-analysis thesis §4.2.3.1 (planar multiple projection: a triangle belongs to
+//! the plane its normal is nearest to, sign left aside), which names its own fault: the texture
+//! jumps where the plane changes. What we changed:
 //!
-//! - [`planes`] gives all three places with weights that fade from one to the next, for those who read heights three times and add them.
-//! - [`TriplanarPath`] gives one place, for contact events, which have one. It keeps its plane until another is clearly nearer
-//!   ([`HOLD`]), so that a normal that trembles at 45° does not switch at every report, and goes on *from where it is*
-//!   on the new plane: an offset takes up the difference. So uv never jumps along a contact's path, at the price that
-//!   the far side of an edge feels another part of the surface when it is reached another way. Blended heights have no such
-//!   price but cost three readings and flatten the relief by up to √3 where three planes meet.
+//! - [`planes`] gives all three places with weights that fade from one to the next, for those who
+//!   read heights three times and add them.
+//! - [`TriplanarPath`] gives one place, for contact events, which have one. It keeps its plane
+//!   until another is clearly nearer ([`HOLD`]), so that a normal that trembles at 45° does not
+//!   switch at every report, and goes on *from where it is* on the new plane: an offset takes up
+//!   the difference. So uv never jumps along a contact's path, at the price that the far side of an
+//!   edge feels another part of the surface when it is reached another way. Blended heights have no
+//!   such price but cost three readings and flatten the relief by up to √3 where three planes meet.
 //!
-//! A plane sees a slanted surface shortened: by up to 1/√2 across an edge, 1/√3 at a corner, and a little more while a plane is held.
-//! The offset of [`TriplanarPath`] does not undo that.
+//! A plane sees a slanted surface shortened: by up to 1/√2 across an edge, 1/√3 at a corner, and a
+//! little more while a plane is held. The offset of [`TriplanarPath`] does not undo that.
 
 use asperity_dsp::DesignError;
 
-/// Normal components up to this share of the largest have no weight, so that flat faces read one plane.
+/// Normal components up to this share of the largest have no weight, so that flat faces read one
+/// plane.
 pub const DELTA: f64 = 0.3;
 
 /// Exponent k of the weights: higher is a narrower fade.
 pub const SHARPNESS: i32 = 4;
 
-/// Another plane is taken when its normal component exceeds that of the current one by this factor: 5° past the diagonal.
+/// Another plane is taken when its normal component exceeds that of the current one by this factor:
+/// 5° past the diagonal.
 pub const HOLD: f64 = 1.2;
 
 /// A planar projection of a point of a body.
@@ -39,8 +45,8 @@ pub struct Plane {
     pub weight: f64,
 }
 
-/// The three projections of a point with the surface normal `normal` (any length, any sign; without a direction all three
-/// count alike), on a surface of `size_m` = (width, height).
+/// The three projections of a point with the surface normal `normal` (any length, any sign; without
+/// a direction all three count alike), on a surface of `size_m` = (width, height).
 ///
 /// ```
 /// use asperity_texture::triplanar::planes;
@@ -74,7 +80,8 @@ pub struct SurfacePoint {
     pub velocity_m_s: [f64; 2],
 }
 
-/// The path of one contact over a body without uv. Keep one a contact; begin a new one with each touch.
+/// The path of one contact over a body without uv. Keep one a contact; begin a new one with each
+/// touch.
 ///
 /// ```
 /// use asperity_texture::triplanar::TriplanarPath;
@@ -113,8 +120,9 @@ impl TriplanarPath {
         self.plane
     }
 
-    /// The next point of the path: position and velocity in body coordinates (m, m/s) and the surface normal there
-    /// (any length, any sign). Where the plane changes, the step since the last point is made on the old one.
+    /// The next point of the path: position and velocity in body coordinates (m, m/s) and the
+    /// surface normal there (any length, any sign). Where the plane changes, the step since the
+    /// last point is made on the old one.
     pub fn at(&mut self, position_m: [f64; 3], velocity_m_s: [f64; 3], normal: [f64; 3]) -> SurfacePoint {
         let nearest = self.nearest(normal);
         let held = *self.plane.get_or_insert(nearest);

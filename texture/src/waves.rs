@@ -3,7 +3,8 @@
 //! ```text
 //! image'(x) = Σ_k g(|ω_x|, |ω_y|) X(k) e^(i ω·x) / (width · height)        ω = 2π k / size, radians per texel
 //! ```
-//! A gain that is the same for a wave and its mirror images is asked for a quarter of the waves, and half of them are kept: X(−k) = conj X(k).
+//! A gain that is the same for a wave and its mirror images is asked for a quarter of the waves,
+//! and half of them are kept: X(−k) = conj X(k).
 
 use crate::fft2::{RealFft2, Workspace};
 use crate::raster::Raster;

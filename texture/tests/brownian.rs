@@ -11,7 +11,8 @@ use asperity_texture::raster::Raster;
 use common::{Stroke, bits, rms};
 
 /// H of a line of heights by the madogram, log2 of the ratio of mean absolute differences at lags 2
-/// and 1 (Gneiting, Ševčíková & Percival 2012): an estimator that shares nothing with the generators.
+/// and 1 (Gneiting, Ševčíková & Percival 2012): an estimator that shares nothing with the
+/// generators.
 fn madogram(line: &[f64]) -> f64 {
     let mean = |lag: usize| {
         let n = (line.len() - lag) as f64;
@@ -127,7 +128,8 @@ fn increments_of_exact_open_surfaces_follow_the_law_in_all_directions() {
 
 #[test]
 fn midpoint_variances_are_those_the_law_leaves_open() {
-    // The centre of a 3 × 3 surface, over many seeds: variance of X(½,½) about the origin is 2^{−H}.
+    // The centre of a 3 × 3 surface, over many seeds: variance of X(½,½) about the origin is
+    // 2^{−H}.
     for hurst in [0.2, 0.5, 0.8] {
         let (mut centre, mut edge, mut corner) = (0.0, 0.0, 0.0);
         let count = 20_000_i32;

@@ -1,5 +1,5 @@
-//! Reliefs under light from the viewer's direction, as the thesis' scanner saw them: heights come back where there is a flat ground, and
-//! where there is none another way is taken and said.
+//! Reliefs under light from the viewer's direction, as the thesis' scanner saw them: heights come
+//! back where there is a flat ground, and where there is none another way is taken and said.
 #![cfg(feature = "offline")]
 
 use crate::framed;

@@ -1,4 +1,5 @@
-//! Patterns that repeat along one direction: the translation, the seven groups, stripes, and pictures that have none.
+//! Patterns that repeat along one direction: the translation, the seven groups, stripes, and
+//! pictures that have none.
 #![cfg(feature = "offline")]
 
 use crate::exact_brownian;
@@ -14,7 +15,8 @@ use std::f64::consts::TAU;
 /// Where a group carries a point of a band, in periods.
 type Image = fn(f64, f64) -> (f64, f64);
 
-/// A band of ornaments, turned by `turn`, on a quiet ground: blobs and their images under the group.
+/// A band of ornaments, turned by `turn`, on a quiet ground: blobs and their images under the
+/// group.
 fn band(group: FriezeGroup, period: f64, turn: f64, noise: f64, seed: u64) -> Raster {
     let mut rng = Rng::new(seed);
     let blobs: Vec<[f64; 4]> = (0..3_usize)

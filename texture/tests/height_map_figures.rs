@@ -65,8 +65,8 @@ fn stroke_at(rate_hz: f64, start: [f64; 2], velocity: [f64; 2], len: usize) -> V
         .collect()
 }
 
-// texture/tests/independent/spline.py: scipy.ndimage.map_coordinates, order 3, modes grid-wrap, reflect
-// and nearest (which settles its prefilter over 12 texels: 1e-6).
+// texture/tests/independent/spline.py: scipy.ndimage.map_coordinates, order 3, modes grid-wrap,
+// reflect and nearest (which settles its prefilter over 12 texels: 1e-6).
 #[test]
 fn heights_between_texels_agree_with_scipy() {
     let texels = Raster::from_fn(7, 5, |x, y| ((x * 37 + y * 91 + x * x * y * 13) % 101) as f64 / 101.0);
@@ -122,8 +122,8 @@ fn the_slope_is_the_derivative_of_the_height_in_every_wrap_mode() {
 
 /// Power outside the fundamental of a signal that is a sine of known frequency, dB below it.
 fn snr_db(signal: &[f64], radians_per_sample: f64) -> f64 {
-    // Least squares for a sine, a cosine and a constant: over many periods they are orthogonal enough
-    // after two rounds.
+    // Least squares for a sine, a cosine and a constant: over many periods they are orthogonal
+    // enough after two rounds.
     let mut rest = signal.to_vec();
     let mut tone = [0.0; 2];
     for _ in 0..6 {
@@ -145,7 +145,8 @@ fn snr_db(signal: &[f64], radians_per_sample: f64) -> f64 {
     10.0 * (0.5 * (tone[0] * tone[0] + tone[1] * tone[1]) / noise).log10()
 }
 
-// Bar of the project: velocity SNR ≥ 60 dB on an oblique path over a 16-bit sine of 12.8 texels a period.
+// Bar of the project: velocity SNR ≥ 60 dB on an oblique path over a 16-bit sine of 12.8 texels a
+// period.
 #[test]
 fn an_oblique_stroke_over_a_16_bit_sine_has_a_velocity_snr_above_60_db() {
     let sine = Raster::from_fn(1024, 1024, |x, _| {

@@ -1,4 +1,5 @@
-//! How ground bends under a tip: in closed form, scaled, tiled, and the same by every way to the same place.
+//! How ground bends under a tip: in closed form, scaled, tiled, and the same by every way to the
+//! same place.
 
 use asperity_texture::combine::{Scale, Sum};
 use asperity_texture::height_field::{HeightField, SurfaceBlock, Touch, hollow_m};

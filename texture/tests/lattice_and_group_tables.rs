@@ -1,4 +1,5 @@
-//! The stress table of the lattice, the pictures that have none, all 17 wallpaper groups, and the corpus.
+//! The stress table of the lattice, the pictures that have none, all 17 wallpaper groups, and the
+//! corpus.
 #![cfg(feature = "offline")]
 
 use crate::exact_brownian;
@@ -33,7 +34,8 @@ fn lattices_are_found_in_every_row_of_the_stress_table() {
     assert!(mean >= 0.95, "{mean}");
 }
 
-/// Once taken for a multiple of their cell, or for translations of 4 texels at which every smooth picture fits itself.
+/// Once taken for a multiple of their cell, or for translations of 4 texels at which every smooth
+/// picture fits itself.
 #[test]
 fn a_warped_cell_is_neither_doubled_nor_lost_among_fine_ones() {
     for seed in [4, 23, 24] {
@@ -67,7 +69,8 @@ fn pictures_without_a_pattern_have_no_lattice() {
     for (name, control) in &controls {
         assert!(find_lattice(control).is_none(), "{name}: {:?}", find_lattice(control));
     }
-    // Five repeats on twenty texels: too few for the feature matrix; what the seam shows is the pattern or nothing.
+    // Five repeats on twenty texels: too few for the feature matrix; what the seam shows is the
+    // pattern or nothing.
     let tiny = Raster::from_fn(20, 20, |x, y| ((x % 4) * (y % 4)) as f64);
     let found = find_lattice(&tiny).map(|lattice| [lattice.t1_px, lattice.t2_px]);
     assert!(found.is_none_or(|basis| is_lattice(basis, [[4.0, 0.0], [0.0, 4.0]])), "{found:?}");
@@ -126,7 +129,8 @@ fn all_seventeen_wallpaper_groups_are_named() {
                 wrong += &format!(" {}→{found:?}", group.name());
             }
         }
-        // Four random blobs may almost have a symmetry more; the example `analysis_table groups` asks 20 of each.
+        // Four random blobs may almost have a symmetry more; the example `analysis_table groups`
+        // asks 20 of each.
         assert!(right_here + 1 >= SEEDS, "{}, wrong:{wrong}", group.name());
         right += right_here;
     }
@@ -148,7 +152,8 @@ fn a_picture_of_five_cells_gives_them_to_a_fiftieth_of_a_texel() {
 #[test]
 fn averaging_within_the_fundamental_domain_removes_noise() {
     for group in [WallpaperGroup::P2, WallpaperGroup::Pgg, WallpaperGroup::P4g, WallpaperGroup::P31m] {
-        // Four random blobs may almost repeat within the cell; take a motif that is clear when clean.
+        // Four random blobs may almost repeat within the cell; take a motif that is clear when
+        // clean.
         let clear = (11..20).find_map(|seed| {
             let clean = patterns::normalised(&wallpaper::picture(group, 192, seed));
             let lattice = find_lattice(&clean)?;

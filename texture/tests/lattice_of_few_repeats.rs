@@ -1,4 +1,5 @@
-//! Maps that tile and repeat two to five times a side: the seam shows what the feature matrix cannot.
+//! Maps that tile and repeat two to five times a side: the seam shows what the feature matrix
+//! cannot.
 #![cfg(feature = "offline")]
 
 use crate::patterns;
@@ -12,7 +13,8 @@ use std::f64::consts::TAU;
 
 const SIDE: usize = 128;
 
-/// A mark of a motif: place in the cell, size in texels, height, and whether it is a square instead of a bump.
+/// A mark of a motif: place in the cell, size in texels, height, and whether it is a square instead
+/// of a bump.
 struct Mark {
     at: [f64; 2],
     size: f64,
@@ -108,7 +110,8 @@ fn a_map_that_tiles_shows_two_to_five_repeats_a_side() {
     }
 }
 
-/// Of few cells under much noise too few waves are left to tell a pattern from chance: none is claimed rather than a wrong one.
+/// Of few cells under much noise too few waves are left to tell a pattern from chance: none is
+/// claimed rather than a wrong one.
 #[test]
 fn nine_cells_and_more_are_found_under_noise_and_fewer_are_not_misread() {
     let many =

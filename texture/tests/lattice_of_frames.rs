@@ -1,4 +1,5 @@
-//! Squares in frames and the reliefs of the thesis: no quarter or fifth of the lattice, no multiple.
+//! Squares in frames and the reliefs of the thesis: no quarter or fifth of the lattice, no
+//! multiple.
 #![cfg(feature = "offline")]
 
 use crate::framed;
@@ -39,7 +40,8 @@ fn frames_of_any_period_show_it() {
     assert!(share >= 0.99, "{share}: {wrong:#?}");
 }
 
-/// 9 texels of ground and 38.7 of square: lines fit lines at 11.2, which divides no period, and no coarser lattice of that was the true one.
+/// 9 texels of ground and 38.7 of square: lines fit lines at 11.2, which divides no period, and no
+/// coarser lattice of that was the true one.
 #[test]
 fn a_gap_that_divides_no_period_makes_no_lattice() {
     let case = Framed {

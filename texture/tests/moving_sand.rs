@@ -1,4 +1,5 @@
-//! The moving picture of sand: what is shown are the simulation's own heights, only where they change, for next to nothing.
+//! The moving picture of sand: what is shown are the simulation's own heights, only where they
+//! change, for next to nothing.
 
 use asperity_texture::moving_picture::PictureReader;
 use asperity_texture::sand::simulation::Pose;

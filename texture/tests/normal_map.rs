@@ -23,7 +23,8 @@ fn heights_of_8_bit_maps_are_within_six_thousandths_whatever_made_the_map() {
                 println!("{name:14} {derivative:?} {green:?}: {error:.5}, taken for {:?}", made.derivative);
                 assert_eq!((made.green, made.green_is_certain), (green, true), "{name} {derivative:?}");
                 assert!(made.tileable, "{name}");
-                // A wave as long along u as along v does not tell how its slopes were taken, everything else does.
+                // A wave as long along u as along v does not tell how its slopes were taken,
+                // everything else does.
                 let told = if name == "bumps" { Derivative::ExactOrCentral } else { derivative };
                 assert_eq!((made.derivative, made.derivative_is_certain), (told, name != "bumps"), "{name}");
                 // Where the bar is out of anybody's reach: tests/normal_map_limits.rs.
@@ -144,7 +145,8 @@ fn a_stone_wall_made_by_others_gives_its_displacement_back() {
     let [r, g, b] = [Channel::R, Channel::G, Channel::B].map(|c| load("NormalGL", c));
     let truth = load("Displacement", Channel::Luma);
     let made = heights_from_normals(&r, &g, &b, &NormalMapOptions::default()).unwrap();
-    // Their displacement was levelled over many stones, which normals cannot know: compare within 64 texels.
+    // Their displacement was levelled over many stones, which normals cannot know: compare within
+    // 64 texels.
     let r = correlation(&within(&made.height_px, 64), &within(&truth, 64));
     println!("stone wall: r = {r:.3}, {:?}, {:?}, tileable {}", made.green, made.derivative, made.tileable);
     assert_eq!(made.green, Green::OpenGl);

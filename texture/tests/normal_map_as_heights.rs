@@ -1,4 +1,5 @@
-//! A normal map that is named as a displacement map is refused; every other picture of the corpus is taken.
+//! A normal map that is named as a displacement map is refused; every other picture of the corpus
+//! is taken.
 #![cfg(feature = "image")]
 
 use asperity_measure::corpus::corpus;

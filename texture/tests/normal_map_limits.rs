@@ -1,5 +1,6 @@
 //! Limits of 8-bit normal maps: pairs of surfaces that have one and the same map. Whoever makes a
-//! surface of that map errs by half of what the two differ by, in one case of the two, whatever he does.
+//! surface of that map errs by half of what the two differ by, in one case of the two, whatever he
+//! does.
 
 #![cfg(feature = "offline")]
 
@@ -48,7 +49,8 @@ fn one_wave_is_the_same_map_whichever_derivative_made_it() {
             );
             assert!(untold <= (1.0 + limit) * (1.0 + told) - 1.0, "{wavelength_px} {derivative:?}: {untold}");
         }
-        // Sobel lies outside of the two: a map is sooner taken for a baked one or one of plain differences.
+        // Sobel lies outside of the two: a map is sooner taken for a baked one or one of plain
+        // differences.
         let (untold, told) =
             (error(&found, Derivative::Sobel), error(&made(Some(Derivative::Sobel)), Derivative::Sobel));
         let limit = limit(Derivative::Sobel);
@@ -59,7 +61,8 @@ fn one_wave_is_the_same_map_whichever_derivative_made_it() {
     }
 }
 
-/// Moves the slopes to the nearest ones whose normals round as those of the map do, with 2 % of half a step to spare.
+/// Moves the slopes to the nearest ones whose normals round as those of the map do, with 2 % of
+/// half a step to spare.
 fn rounded_alike(field: &mut Slopes, [red, green, blue]: &[Raster; 3]) {
     let half = 0.98 * 0.5 / 127.5;
     let held = |value: f64, level: f64| value.clamp(2.0 * level - 1.0 - half, 2.0 * level - 1.0 + half);
@@ -80,7 +83,8 @@ fn rounded_alike(field: &mut Slopes, [red, green, blue]: &[Raster; 3]) {
     }
 }
 
-/// The surface with those waves turned over that Sobel's derivative hardly sees, changed as little as it takes to have the same map.
+/// The surface with those waves turned over that Sobel's derivative hardly sees, changed as little
+/// as it takes to have the same map.
 fn twin(surface: &Raster) -> Option<Raster> {
     let n = surface.width;
     let mut fft = Fft2::new(n, n);
@@ -127,7 +131,8 @@ fn sobel_ridges_have_a_twin_with_the_same_map() {
     let made = heights_from_normals(&r, &g, &b, &NormalMapOptions::default()).unwrap();
     let errors = [&ridges, &twin].map(|truth| relative_error(&made.height_px, truth));
     println!("Sobel ridges: {:.5}, their twin {:.5}; nobody below {limit:.5} in both", errors[0], errors[1]);
-    // Nobody can read the ridges to 0.6 %: 8 bits do not tell them from a surface that differs by three times that.
+    // Nobody can read the ridges to 0.6 %: 8 bits do not tell them from a surface that differs by
+    // three times that.
     assert!(limit > 0.017, "{limit}");
     assert_eq!(made.derivative, Derivative::Sobel);
     assert!(errors[0] < 1.1 * limit && errors[1] < 1.4 * limit, "{errors:?}");

@@ -1,5 +1,6 @@
-//! Normal maps that were resized, saved as JPEG or cut from larger ones, of surfaces with steep edges: the heights must be the surface's, and no
-//! wave may come out much stronger than it is. Longer tables, of files: `examples/normal_map_table`.
+//! Normal maps that were resized, saved as JPEG or cut from larger ones, of surfaces with steep
+//! edges: the heights must be the surface's, and no wave may come out much stronger than it is.
+//! Longer tables, of files: `examples/normal_map_table`.
 
 #![cfg(feature = "offline")]
 
@@ -14,7 +15,8 @@ use image::imageops::FilterType;
 use normals::{as_jpeg, cut, halved, halved_heights, normal_map, thirds, without_slant};
 use surfaces::{correlation, fractal};
 
-/// Raised discs with edges two texels wide, 32 texels apart, 3 texels high, on slightly uneven ground: a tread plate.
+/// Raised discs with edges two texels wide, 32 texels apart, 3 texels high, on slightly uneven
+/// ground: a tread plate.
 fn studs(n: usize) -> Raster {
     let ground = fractal(n, 4.0, 1.0, 41);
     Raster::from_fn(n, n, |x, y| {
@@ -36,7 +38,8 @@ fn made(map: &[Raster; 3]) -> NormalMapHeights {
     heights_from_normals(&map[0], &map[1], &map[2], &NormalMapOptions::default()).unwrap()
 }
 
-/// Whether the true heights tile. Those that do not are compared without their slant, which no map keeps that is not told to.
+/// Whether the true heights tile. Those that do not are compared without their slant, which no map
+/// keeps that is not told to.
 #[derive(Clone, Copy, PartialEq)]
 enum Truth {
     Tiles,
@@ -96,7 +99,8 @@ fn a_map_that_tiles_still_tiles_as_jpeg_and_gets_no_stronger() {
     }
 }
 
-/// Holes with upright walls, 32 texels apart, 8 texels deep before the slopes are scaled to an rms of 1: a perforated sheet.
+/// Holes with upright walls, 32 texels apart, 8 texels deep before the slopes are scaled to an rms
+/// of 1: a perforated sheet.
 fn perforated(n: usize) -> Raster {
     let sheet = Raster::from_fn(n, n, |x, y| {
         let shift = 16 * (y / 32 % 2);
@@ -126,7 +130,8 @@ fn quartered(fine: &Raster) -> Raster {
     })
 }
 
-/// A 256² map as it is baked: normals of a surface of four times as many texels, averaged, lengths 1 again; and the means of its heights.
+/// A 256² map as it is baked: normals of a surface of four times as many texels, averaged, lengths
+/// 1 again; and the means of its heights.
 fn baked(surface: &Raster) -> ([Raster; 3], Raster) {
     let fine = slopes(&surface.map(|z| 4.0 * z), Derivative::Central);
     let normal = |which: usize| {
@@ -147,7 +152,8 @@ fn baked(surface: &Raster) -> ([Raster; 3], Raster) {
 
 #[test]
 fn walls_between_flat_places_are_no_stronger_than_a_height_map_shows_them() {
-    // Distances in texels of the baked map: round holes in rows, panels with grooves, discs of three heights.
+    // Distances in texels of the baked map: round holes in rows, panels with grooves, discs of
+    // three heights.
     let at = |i: usize| 0.25 * i as f64;
     let wall = |distance: f64, width: f64| (distance / width + 0.5).clamp(0.0, 1.0);
     let holes = |x: usize, y: usize| {

@@ -82,8 +82,8 @@ fn sixteen_bit_maps_keep_their_levels() {
     }
 }
 
-/// The JPEG is another export of the same height (other black and white points, compressed): after a
-/// straight-line fit of grey to grey the two must be the same surface.
+/// The JPEG is another export of the same height (other black and white points, compressed): after
+/// a straight-line fit of grey to grey the two must be the same surface.
 #[test]
 fn the_16_bit_and_the_8_bit_export_of_one_ground_agree() {
     let (Some(fine), Some(coarse)) = (

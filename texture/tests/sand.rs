@@ -229,8 +229,8 @@ fn the_same_strokes_give_the_same_sand_and_the_edge_keeps_its_sand_too() {
 fn settling_a_random_field_is_at_least_five_times_faster_than_the_naive_pass() {
     let (n, cell) = (256, 1e-3);
     for (name, start) in random_fields(n, 5) {
-        // Taken in turns, the best of each: neighbours on the machine come and go. The naive pass takes
-        // the better one of two shares.
+        // Taken in turns, the best of each: neighbours on the machine come and go. The naive pass
+        // takes the better one of two shares.
         let (mut slow, mut fast) = (f64::INFINITY, f64::INFINITY);
         for share in [Share::Half, Share::Level, Share::Half] {
             let mut naive = NaiveSand::new(&start, n, cell, TALUS_DEG, SETTLED_DEG);
@@ -352,7 +352,8 @@ fn a_fast_tool_leaves_no_scallops_of_a_frame_s_length() {
         }
         let depth_m = sand.law().depth_m(force_n);
         let scallop_m = |sand: &SandSimulation| {
-            // Eight frames' lengths in the middle of the groove: the amplitude of that period, from end to end.
+            // Eight frames' lengths in the middle of the groove: the amplitude of that period, from
+            // end to end.
             let period_m = speed_m_s / 60.0;
             let turns = (0.1 / period_m).floor();
             let sums = (0..4000).map(|n| {

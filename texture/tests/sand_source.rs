@@ -258,7 +258,8 @@ fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
     assert!((pushed(&mut sand, &touch)[0] + 1.6).abs() < 1e-12);
 }
 
-/// What the sand pushes along itself, for a contact force as large as what presses; its slope does not push.
+/// What the sand pushes along itself, for a contact force as large as what presses; its slope does
+/// not push.
 fn pushed(sand: &mut SandSource, touch: &Touch) -> [f64; 2] {
     let path = PathBlock {
         position_m: &[touch.position_m],

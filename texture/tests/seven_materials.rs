@@ -1,5 +1,5 @@
-//! The seven materials are told apart by the heights under a finger and by the force on a tool; the example
-//! `materials_blind` asks about many more strokes and pieces.
+//! The seven materials are told apart by the heights under a finger and by the force on a tool; the
+//! example `materials_blind` asks about many more strokes and pieces.
 
 use crate::materials;
 

@@ -171,7 +171,8 @@ fn light_from_the_viewer_is_refused_where_slopes_are_asked_for_and_told_otherwis
 
 #[test]
 fn a_flat_sheet_scratched_in_one_direction_is_not_lit_from_a_side() {
-    // Bright scratches, most of them within 30° of one direction: their power goes as cos² of the angle, as a light's would.
+    // Bright scratches, most of them within 30° of one direction: their power goes as cos² of the
+    // angle, as a light's would.
     let mut rng = asperity_dsp::rng::Rng::new(81);
     let n = 256;
     let mut sheet = Raster::constant(n, n, 0.4);

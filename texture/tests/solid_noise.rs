@@ -52,7 +52,8 @@ fn slopes_agree_with_finite_differences() {
             |n, out, i| {
                 let at = stroke.position_m(n);
                 for a in 0..2 {
-                    // The value is in f32: 1e-7 of ±12 · A over 4e-6 m bounds what a difference can tell.
+                    // The value is in f32: 1e-7 of ±12 · A over 4e-6 m bounds what a difference can
+                    // tell.
                     let step = 2e-6;
                     let shifted = |s: f64| {
                         let mut q = at;

@@ -11,7 +11,8 @@ use image::{Rgb, RgbImage};
 
 const SIDE: u32 = 320;
 
-/// A picture of noisy colours, blurred as a sensor's mosaic does, under light that falls off to one side, read back from a JPEG.
+/// A picture of noisy colours, blurred as a sensor's mosaic does, under light that falls off to one
+/// side, read back from a JPEG.
 fn photographed(quality: u8, noise: f64, ground: impl Fn(u32, u32) -> f64) -> Photograph {
     let mut rng = Rng::new(2_611 + u64::from(quality));
     let side = SIDE as usize + 1;
@@ -33,7 +34,8 @@ fn photographed(quality: u8, noise: f64, ground: impl Fn(u32, u32) -> f64) -> Ph
     load_reduced_photograph(&path, MOST_TEXELS).unwrap()
 }
 
-/// Rms of the heights, m, against their mean over 64 texels: what a stroke at 0.1 m/s feels above 10 Hz.
+/// Rms of the heights, m, against their mean over 64 texels: what a stroke at 0.1 m/s feels above
+/// 10 Hz.
 fn felt_m(photograph: &Photograph, jpeg_divisor: f64) -> f64 {
     let options = PhotoOptions { jpeg_divisor, ..PhotoOptions::default() };
     let surface = surface_from_photo(&photograph.brightness, &options, |_| {}).unwrap();

@@ -1,9 +1,9 @@
 //! A machine in the place of the observers of document 002's ABX experiment.
 //!
-//! A finger strokes each surface at random through the engine; what the actuator would do in a stroke becomes
-//! a vector of third-octave levels; a linear discriminant that has seen other strokes of two surfaces
-//! says which of the two a stroke was on. Its share of right answers, cross-validated, stands for the
-//! observers': 0.5 is chance, 1 is certain.
+//! A finger strokes each surface at random through the engine; what the actuator would do in a
+//! stroke becomes a vector of third-octave levels; a linear discriminant that has seen other
+//! strokes of two surfaces says which of the two a stroke was on. Its share of right answers,
+//! cross-validated, stands for the observers': 0.5 is chance, 1 is certain.
 //!
 //! | symbol | here |
 //! |---|---|
@@ -11,9 +11,9 @@
 //! | level | 10 log₁₀(power of displacement in the band + [`NOISE_M`]²), bands of a third of an octave from [`LOWEST_HZ`] |
 //! | discriminant | w = (Σ + λI)⁻¹(μ_B − μ_A), Σ pooled over both, λ = [`SHRINKAGE`] · mean variance |
 //!
-//! Source: the experiment is document 002's (five textures, 40 × 40 mm, 256 × 256 texels, chance 0.5); strokes, features
-//! and judge are ours. [`NOISE_M`] stands for what skin does not feel; a judge with less noise is stricter
-//! than the observers were.
+//! Source: the experiment is document 002's (five textures, 40 × 40 mm, 256 × 256 texels, chance
+//! 0.5); strokes, features and judge are ours. [`NOISE_M`] stands for what skin does not feel; a
+//! judge with less noise is stricter than the observers were.
 
 use asperity::files::FileError;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
@@ -41,8 +41,8 @@ pub const FORCES_N: [f64; 2] = [0.45, 0.55];
 pub const LOWEST_HZ: f64 = 12.5;
 /// Bands: up to 800 Hz, beyond which fingertips feel next to nothing.
 const BANDS: usize = 19;
-/// Displacement that the judge cannot tell from none, m: a tenth of the best vibration threshold of a
-/// fingertip, 0.1 µm at 250 Hz (Bolanowski 1988).
+/// Displacement that the judge cannot tell from none, m: a tenth of the best vibration threshold of
+/// a fingertip, 0.1 µm at 250 Hz (Bolanowski 1988).
 pub const NOISE_M: f64 = 1e-8;
 /// λ over the mean variance.
 pub const SHRINKAGE: f64 = 0.01;
@@ -293,8 +293,9 @@ mod tests {
 
     #[test]
     fn gratings_are_told_apart_as_often_as_the_angles_of_the_strokes_allow() {
-        // Across a grating at an angle a finger meets cos θ as many ridges a second. A stroke on the fine one (half the
-        // period) beyond 60° is one on the coarse one; the best judge is right in 1/2 + 1/2 · 60°/90° = 5/6.
+        // Across a grating at an angle a finger meets cos θ as many ridges a second. A stroke on
+        // the fine one (half the period) beyond 60° is one on the coarse one; the best judge is
+        // right in 1/2 + 1/2 · 60°/90° = 5/6.
         let told = right_answers(&felt(16.0, 0.0, 1), &felt(8.0, 0.0, 2));
         assert!((told - 5.0 / 6.0).abs() < 0.08, "{told}");
     }

@@ -30,15 +30,16 @@ pub struct Table {
     pub rows: Vec<Vec<f64>>,
     /// Mean over the pairs of different surfaces.
     pub mean: f64,
-    /// Mean over the pairs of the first surface, which metamers are made like, and another one: what counts for them, and what
-    /// the mean over all pairs hides.
+    /// Mean over the pairs of the first surface, which metamers are made like, and another one:
+    /// what counts for them, and what the mean over all pairs hides.
     pub reference: f64,
     /// Mean of the diagonal: chance, if the judge is honest.
     pub same: f64,
 }
 
 impl Comparison {
-    /// The table of maps (heights 0–1); `set` tells sets of maps apart that share a seed. `progress` is told after each map.
+    /// The table of maps (heights 0–1); `set` tells sets of maps apart that share a seed.
+    /// `progress` is told after each map.
     ///
     /// # Errors
     /// The place of the map that the engine refuses, and why.

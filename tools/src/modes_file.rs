@@ -60,7 +60,8 @@ fn rounded(x: f64) -> f64 {
 }
 
 impl ModesFile {
-    /// A body with its damping, and with `radiation` in pascals at 1 m; modes that do not swing any more are left out and told.
+    /// A body with its damping, and with `radiation` in pascals at 1 m; modes that do not swing any
+    /// more are left out and told.
     ///
     /// # Errors
     /// When no mode is left that rings.

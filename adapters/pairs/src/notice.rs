@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// Gravity beyond which the game's unit is taken for the centimetre, m/s²: four times that of Jupiter.
+/// Gravity beyond which the game's unit is taken for the centimetre, m/s²: four times that of
+/// Jupiter.
 pub const ODD_GRAVITY_M_S2: f32 = 100.0;
 /// Size beyond which a thing that moves is taken for one in centimetres, m.
 pub const ODD_SIZE_M: f32 = 100.0;

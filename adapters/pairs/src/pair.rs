@@ -41,7 +41,8 @@ pub struct Doing {
     pub slip_m_s: f32,
     /// Force between them, mean of the step, N.
     pub force_n: f32,
-    /// The one of the two that has a surface but no texture coordinates where it is touched: nothing can be heard of it.
+    /// The one of the two that has a surface but no texture coordinates where it is touched:
+    /// nothing can be heard of it.
     pub unplaced: Option<usize>,
 }
 
@@ -67,7 +68,8 @@ impl Pair {
         self.doing
     }
 
-    /// After a step in which the pair was listed. A new contact is called `next_contact`, which grows by it.
+    /// After a step in which the pair was listed. A new contact is called `next_contact`, which
+    /// grows by it.
     pub fn advance(&mut self, step: &Step<'_>, next_contact: &mut u64, events: &mut Vec<ContactEvent>) {
         let Some(solved) = step.solved else { return self.leave(events) };
         let landed = self.doing.is_none();
@@ -184,8 +186,8 @@ impl Pair {
         }
     }
 
-    /// The path is integrated and pulled gently to where the solver says, because its point belongs to the start of the step and jumps as
-    /// points come and go.
+    /// The path is integrated and pulled gently to where the solver says, because its point belongs
+    /// to the start of the step and jumps as points come and go.
     fn follow(&mut self, told_m: Vec3, moved_m: Vec3) -> Vec3 {
         let local_m = match self.local_m {
             Some(last_m) if (told_m - last_m).length() < TELEPORT_M + 2.0 * moved_m.length() => {

@@ -17,7 +17,8 @@ pub struct Thing {
     pub surface: Option<SurfaceId>,
     /// The haptic channel that feels it: a finger, or a tool in the hand.
     pub actuator: Option<Actuator>,
-    /// Probe that it touches with; none = a finger is the engine's own probe, anything else a rigid one.
+    /// Probe that it touches with; none = a finger is the engine's own probe, anything else a rigid
+    /// one.
     pub probe: Option<ProbeId>,
 }
 
@@ -56,10 +57,12 @@ pub trait Side {
     fn motion(&self) -> Motion;
     /// Mass, kg; infinite for what nothing moves.
     fn mass_kg(&self) -> f32;
-    /// Mobility: gain in speed of its point along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
+    /// Mobility: gain in speed of its point along a direction after an impulse of 1 N·s along it
+    /// there, 1/kg: 0 for what nothing moves.
     fn mobility_per_kg(&self, point_m: Vec3, along: Vec3) -> f32;
-    /// Radius of curvature with which it rolls on something that it meets at a point with a normal, m: then its place of contact moves with
-    /// its centre. None where it does not roll: of a box, of a cylinder that stands on its end.
+    /// Radius of curvature with which it rolls on something that it meets at a point with a normal,
+    /// m: then its place of contact moves with its centre. None where it does not roll: of a box,
+    /// of a cylinder that stands on its end.
     fn rolls_m(&self, point_m: Vec3, normal: Vec3) -> Option<f64>;
     /// Radius of curvature where it strikes, m; none = as it rolls, or an edge.
     fn radius_m(&self) -> Option<f64>;
@@ -79,7 +82,8 @@ pub trait Side {
     fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace>;
 }
 
-/// [`Side::mobility_per_kg`] of a body that moves: 1/m and inverse inertia in space are given as what they do to a vector.
+/// [`Side::mobility_per_kg`] of a body that moves: 1/m and inverse inertia in space are given as
+/// what they do to a vector.
 #[must_use]
 pub fn mobility_per_kg(
     arm_m: Vec3,
@@ -91,7 +95,8 @@ pub fn mobility_per_kg(
     along.dot(inverse_mass(along)) + turn.dot(inverse_inertia(turn))
 }
 
-/// Radius of curvature with which two things meet, m: of the round ones, where there are any, else of an edge.
+/// Radius of curvature with which two things meet, m: of the round ones, where there are any, else
+/// of an edge.
 #[must_use]
 pub fn radius_m(own: [Option<f64>; 2]) -> f64 {
     let curvature: f64 = own.into_iter().flatten().map(|radius_m| 1.0 / radius_m).sum();
@@ -107,7 +112,8 @@ pub fn lies_across(axis: Vec3, normal: Vec3) -> bool {
     axis.dot(normal).abs() < ACROSS
 }
 
-/// Radius of a cylinder or a cone where it lies on its side, m: from its axis, through `origin_m`, to the point.
+/// Radius of a cylinder or a cone where it lies on its side, m: from its axis, through `origin_m`,
+/// to the point.
 #[must_use]
 pub fn axis_radius_m(axis: Vec3, origin_m: Vec3, point_m: Vec3, normal: Vec3) -> Option<f64> {
     let arm_m = point_m - origin_m;

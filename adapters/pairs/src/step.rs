@@ -6,12 +6,13 @@ use glam::Vec3;
 
 /// Slower landings are rest, not impacts, m/s.
 pub(crate) const QUIET_LANDING_M_S: f32 = 0.02;
-/// The least mobility that a blow is reckoned with, 1/kg: a blow between two things that nothing moves is one of 10 t.
+/// The least mobility that a blow is reckoned with, 1/kg: a blow between two things that nothing
+/// moves is one of 10 t.
 const LEAST_MOBILITY_PER_KG: f64 = 1e-4;
 /// |cos| between an axis and a normal below which what is long and round touches along a line, not with an end.
 const LINE: f32 = 0.05;
-/// Force of a hand or a character whom the physics engine lets press with none, because neither is moved by the other, N. Assumed: a
-/// finger that strokes.
+/// Force of a hand or a character whom the physics engine lets press with none, because neither is
+/// moved by the other, N. Assumed: a finger that strokes.
 pub const NOMINAL_FORCE_N: f32 = 1.0;
 
 /// A contact as the solver left it.
@@ -25,10 +26,11 @@ pub struct Solved {
     pub impulse_n_s: f32,
     /// Rebound over approach speed, 0 to 1.
     pub restitution: f32,
-    /// Approach speed there as the solver met it, m/s; 0 where only gravity's share of the step brings the two together, as it does to all
-    /// that rests.
+    /// Approach speed there as the solver met it, m/s; 0 where only gravity's share of the step
+    /// brings the two together, as it does to all that rests.
     pub closing_m_s: f32,
-    /// Set where the force is a nominal one, of two that the engine lets pass through each other: a hand on fixed ground.
+    /// Set where the force is a nominal one, of two that the engine lets pass through each other: a
+    /// hand on fixed ground.
     pub is_nominal: bool,
 }
 
@@ -45,7 +47,8 @@ pub struct Step<'a> {
 }
 
 impl Solved {
-    /// The closing speed of two that moved like this before the step, of which gravity has `gained_m_s` by itself in it.
+    /// The closing speed of two that moved like this before the step, of which gravity has
+    /// `gained_m_s` by itself in it.
     #[must_use]
     pub fn closing_m_s(
         before: [crate::Motion; 2],
@@ -81,7 +84,8 @@ impl Step<'_> {
             restitution: f64::from(solved.restitution).clamp(0.0, 1.0),
             ..Impact::on(thing.body?)
         };
-        // A tool in the hand rings as its holder and is felt; any other striker rings beside what it strikes.
+        // A tool in the hand rings as its holder and is felt; any other striker rings beside what
+        // it strikes.
         (impact.holder, impact.other) =
             if striker.actuator.is_some() { (striker.body, None) } else { (None, striker.body) };
         impact.actuator = striker.actuator.or(thing.actuator);
@@ -95,13 +99,15 @@ impl Step<'_> {
         )
     }
 
-    /// Radius of curvature where the side that touches the scraped one rolls, m; none where it does not.
+    /// Radius of curvature where the side that touches the scraped one rolls, m; none where it does
+    /// not.
     pub(crate) fn roll_radius_m(&self, solved: &Solved, scraped: usize) -> Option<f64> {
         self.sides[1 - scraped].rolls_m(solved.point_m, solved.normal)?;
         Some(self.radius_m(solved))
     }
 
-    /// The contact of what lies on its side in its middle: along the line the solver's point hops by centimetres from step to step.
+    /// The contact of what lies on its side in its middle: along the line the solver's point hops
+    /// by centimetres from step to step.
     pub(crate) fn in_the_middle(&self, solved: Solved, scraped: usize) -> Solved {
         let other = self.sides[1 - scraped];
         match other.axis() {
@@ -129,7 +135,8 @@ impl Step<'_> {
         }
     }
 
-    /// Tangential velocities of the other one over the scraped one, after the step: of the place of contact, and of what is there.
+    /// Tangential velocities of the other one over the scraped one, after the step: of the place of
+    /// contact, and of what is there.
     pub(crate) fn velocities(&self, solved: &Solved, scraped: usize) -> (Vec3, Vec3) {
         let [ground, other] = [self.sides[scraped].motion(), self.sides[1 - scraped].motion()];
         let along = |v: Vec3| v - solved.normal * v.dot(solved.normal);

@@ -94,14 +94,15 @@ impl Adapter {
         })
     }
 
-    /// The probe that things touch with unless told otherwise; its name in a recording is the game's choice.
+    /// The probe that things touch with unless told otherwise; its name in a recording is the
+    /// game's choice.
     #[must_use]
     pub fn rigid_probe(&self) -> ProbeId {
         self.rigid
     }
 
-    /// Says what a collider is; colliders of which nothing is said are not heard. A new thing for a known collider counts from its next
-    /// contact on.
+    /// Says what a collider is; colliders of which nothing is said are not heard. A new thing for a
+    /// known collider counts from its next contact on.
     pub fn insert(&mut self, collider: ColliderHandle, thing: Thing) {
         self.things.insert(collider, thing);
     }
@@ -111,7 +112,8 @@ impl Adapter {
         self.things.remove(&collider);
     }
 
-    /// To be called right before the physics step: keeps how everything moves, because after it a landing is a rebound.
+    /// To be called right before the physics step: keeps how everything moves, because after it a
+    /// landing is a rebound.
     pub fn before_step(&mut self, view: &View<'_>) {
         self.before.clear();
         for (handle, body) in view.bodies.iter() {
@@ -125,7 +127,8 @@ impl Adapter {
         self.notices.take()
     }
 
-    /// To be called right after the physics step: what happened in it, to be reported at its game time.
+    /// To be called right after the physics step: what happened in it, to be reported at its game
+    /// time.
     pub fn after_step(&mut self, view: &View<'_>) -> Vec<ContactEvent> {
         let mut events = Vec::new();
         self.pairs.values_mut().for_each(|listed| listed.seen = false);

@@ -5,7 +5,8 @@ use crate::view::View;
 use asperity_pairs::{Motion, Solved};
 use rapier3d::prelude::*;
 
-/// `None` when nothing presses. `before`: how both moved before the step; `nominal_n`: what presses where neither is moved by the other.
+/// `None` when nothing presses. `before`: how both moved before the step; `nominal_n`: what presses
+/// where neither is moved by the other.
 pub(crate) fn solved(
     pair: &ContactPair,
     view: &View<'_>,
@@ -38,8 +39,8 @@ pub(crate) fn solved(
     Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s, is_nominal: false })
 }
 
-/// Two that the solver never pushes apart, because nothing moves either, one of them a hand or a character: where they overlap they press with a
-/// nominal impulse.
+/// Two that the solver never pushes apart, because nothing moves either, one of them a hand or a
+/// character: where they overlap they press with a nominal impulse.
 fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Option<Solved> {
     let bodies = [pair.collider1, pair.collider2].map(|collider| view.body_of(collider));
     let hands = bodies.iter().zip(nominal_n).filter(|(body, _)| body.is_some_and(RigidBody::is_kinematic));
@@ -73,8 +74,8 @@ fn pushed_n_s(point: &ContactData) -> f32 {
     point.impulse
 }
 
-/// Impulse in rapier 0.35, which counts what the step before handed over as well: of steps alike that is what this one hands on, a quarter of
-/// the weight of what lies still.
+/// Impulse in rapier 0.35, which counts what the step before handed over as well: of steps alike
+/// that is what this one hands on, a quarter of the weight of what lies still.
 #[cfg(feature = "bevy-rapier-0-36")]
 fn pushed_n_s(point: &ContactData) -> f32 {
     (point.impulse - point.warmstart_impulse).max(0.0)

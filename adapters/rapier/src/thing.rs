@@ -1,4 +1,5 @@
-//! A collider to asperity: what it is made of, what rings, what can be stroked on it, and who feels it.
+//! A collider to asperity: what it is made of, what rings, what can be stroked on it, and who feels
+//! it.
 
 use crate::vector::{own, told};
 use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvMapping, UvPlace, UvTriangle};
@@ -36,7 +37,8 @@ impl Thing {
         }
     }
 
-    /// Rings as this body. The body's frame is the collider's own space: that is where blows are told to land.
+    /// Rings as this body. The body's frame is the collider's own space: that is where blows are
+    /// told to land.
     #[must_use]
     pub fn ringing(mut self, body: BodyId) -> Self {
         self.body = Some(body);
@@ -64,24 +66,25 @@ impl Thing {
         self
     }
 
-    /// Radius of what strikes or rolls, m: a ball's, a capsule's or a lying cylinder's own, and [`EDGE_RADIUS_M`](crate::EDGE_RADIUS_M) for an
-    /// edge unless told otherwise.
+    /// Radius of what strikes or rolls, m: a ball's, a capsule's or a lying cylinder's own, and
+    /// [`EDGE_RADIUS_M`](crate::EDGE_RADIUS_M) for an edge unless told otherwise.
     #[must_use]
     pub fn radius_m(mut self, radius_m: f64) -> Self {
         self.radius_m = Some(radius_m);
         self
     }
 
-    /// Its surface runs with this velocity in the collider's own space, m/s: a conveyor belt, whose physics is a hook's
-    /// `tangent_velocity`. What rests on it is silent.
+    /// Its surface runs with this velocity in the collider's own space, m/s: a conveyor belt, whose
+    /// physics is a hook's `tangent_velocity`. What rests on it is silent.
     #[must_use]
     pub fn running(mut self, belt_m_s: [f32; 3]) -> Self {
         self.belt_m_s = Vector::from_array(belt_m_s);
         self
     }
 
-    /// Presses with this force on what nothing moves either, N: a kinematic hand or character on fixed ground, of which rapier tells no
-    /// force. [`NOMINAL_FORCE_N`](crate::NOMINAL_FORCE_N) unless told otherwise; with 0 it is not heard there. Its collider needs
+    /// Presses with this force on what nothing moves either, N: a kinematic hand or character on
+    /// fixed ground, of which rapier tells no force. [`NOMINAL_FORCE_N`](crate::NOMINAL_FORCE_N)
+    /// unless told otherwise; with 0 it is not heard there. Its collider needs
     /// `ActiveCollisionTypes::all()`.
     #[must_use]
     pub fn pressing(mut self, force_n: f32) -> Self {
@@ -104,16 +107,18 @@ impl Thing {
 /// From a place on a collider, in its own space, to texture coordinates.
 #[derive(Debug, Clone)]
 pub enum Mapping {
-    /// By the place and the direction in which the collider faces there: planes, boxes, hulls, spheres, cylinders. A plane serves a height
-    /// field as well.
+    /// By the place and the direction in which the collider faces there: planes, boxes, hulls,
+    /// spheres, cylinders. A plane serves a height field as well.
     Shape(UvMapping),
-    /// A triangle mesh with one coordinate a vertex, in the order of the collider's vertices. rapier's flags that merge vertices renumber
-    /// them, and those that delete triangles move the rest.
+    /// A triangle mesh with one coordinate a vertex, in the order of the collider's vertices.
+    /// rapier's flags that merge vertices renumber them, and those that delete triangles move the
+    /// rest.
     Mesh(Vec<[f64; 2]>),
 }
 
 impl Mapping {
-    /// The plane through `origin_m` (uv 0, 0) whose u and v run along two edges, uv 1 at their ends, m.
+    /// The plane through `origin_m` (uv 0, 0) whose u and v run along two edges, uv 1 at their
+    /// ends, m.
     ///
     /// # Panics
     /// When the edges span no area.
@@ -124,7 +129,8 @@ impl Mapping {
         Self::Shape(UvMapping::Plane(triangle.expect("the edges of a plane span an area")))
     }
 
-    /// Every flat side by its normal: a box, a hull, a compound; uv 1 spans `span_m`, the surface's width and height.
+    /// Every flat side by its normal: a box, a hull, a compound; uv 1 spans `span_m`, the surface's
+    /// width and height.
     #[must_use]
     pub fn by_normal(span_m: [f64; 2]) -> Self {
         Self::Shape(UvMapping::ByNormal { span_m })
@@ -142,8 +148,8 @@ impl Mapping {
         Self::Shape(UvMapping::Cylinder { radius_m, span_m })
     }
 
-    /// Texture coordinates about a place. On a mesh they come from the projection: clustered contacts of several triangles carry no single
-    /// sub-shape index.
+    /// Texture coordinates about a place. On a mesh they come from the projection: clustered
+    /// contacts of several triangles carry no single sub-shape index.
     pub(crate) fn coordinates(&self, shape: &dyn Shape, local_m: Vec3, outward: Vec3) -> Option<UvPlace> {
         match self {
             Self::Shape(mapping) => {
@@ -178,7 +184,8 @@ pub(crate) fn axis(collider: &Collider) -> Option<Vec3> {
     (axis != Vec3::ZERO).then_some(axis)
 }
 
-/// Radius with which a collider rolls on what it meets at a point with a normal, m; none: it does not.
+/// Radius with which a collider rolls on what it meets at a point with a normal, m; none: it does
+/// not.
 pub(crate) fn rolls_m(thing: &Thing, collider: &Collider, point_m: Vec3, normal: Vec3) -> Option<f64> {
     let shape = collider.shape();
     let ball = shape.as_ball().map(|ball| ball.radius);

@@ -1,4 +1,5 @@
-//! Vectors of rapier and of the rules of pairs: they may be of two releases of one library, so they come and go as arrays.
+//! Vectors of rapier and of the rules of pairs: they may be of two releases of one library, so they
+//! come and go as arrays.
 
 use asperity_pairs::Vec3;
 use rapier3d::prelude::Vector;

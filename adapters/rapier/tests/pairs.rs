@@ -1,4 +1,5 @@
-//! Pairs of a rapier world: what strikes, scrapes, rolls and rests is reported as that, with the masses and speeds of mechanics.
+//! Pairs of a rapier world: what strikes, scrapes, rolls and rests is reported as that, with the
+//! masses and speeds of mechanics.
 
 use asperity::{
     Actuator, Body, BodyId, Config, ContactEvent, ContactId, Engine, Impact, Material, Renderer, Scene,

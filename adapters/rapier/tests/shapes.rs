@@ -1,5 +1,6 @@
-//! Shapes, faces, belts and hands of a rapier world: what rolls is no louder than what slides, every side of a box sounds as its top, what rests on
-//! a belt is silent, and a blow lands where it lands.
+//! Shapes, faces, belts and hands of a rapier world: what rolls is no louder than what slides,
+//! every side of a box sounds as its top, what rests on a belt is silent, and a blow lands where it
+//! lands.
 
 use asperity::{
     Actuator, Body, Config, ContactEvent, Engine, Impact, Material, Renderer, Scene, Stock, Surface,
@@ -23,7 +24,8 @@ struct World {
 }
 
 impl World {
-    /// A block of stone of 40 m by 1 m by 40 m whose top lies at height 0, every side of which is mapped.
+    /// A block of stone of 40 m by 1 m by 40 m whose top lies at height 0, every side of which is
+    /// mapped.
     fn new(mapping: Mapping) -> Self {
         let mut config = Config::live(48_000.0);
         config.audio[0].limit = false;

@@ -1,4 +1,5 @@
-//! A finger strokes a ceramic plate on the sound card, for three seconds of an app without a window; Bevy's own loop keeps the time.
+//! A finger strokes a ceramic plate on the sound card, for three seconds of an app without a
+//! window; Bevy's own loop keeps the time.
 //!
 //! ```sh
 //! cargo run --features device --example aloud

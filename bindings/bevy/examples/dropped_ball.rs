@@ -1,5 +1,5 @@
-//! A steel ball dropped on a ceramic plate: rapier moves it, asperity sounds. Without a window and without a sound card; what would be
-//! heard is told in words.
+//! A steel ball dropped on a ceramic plate: rapier moves it, asperity sounds. Without a window and
+//! without a sound card; what would be heard is told in words.
 //!
 //! ```sh
 //! cargo run --features rapier --example dropped_ball

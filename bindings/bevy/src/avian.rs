@@ -1,5 +1,6 @@
-//! Contacts of `avian3d`, by the rules that the adapters of all physics engines share (`asperity-pairs`): every pair of colliders that have a
-//! [`TouchThing`](crate::TouchThing) strikes, scrapes or rolls.
+//! Contacts of `avian3d`, by the rules that the adapters of all physics engines share
+//! (`asperity-pairs`): every pair of colliders that have a [`TouchThing`](crate::TouchThing)
+//! strikes, scrapes or rolls.
 //!
 //! ```text
 //! closing   −normal_speed of the fastest point, which avian keeps from before the solver
@@ -28,8 +29,9 @@ pub const RIGID_PROBE: &str = "avian's rigid things";
 /// Ids of these contacts begin here, so that the app's own stay free below.
 const FIRST_CONTACT: u64 = 1 << 33;
 
-/// Number of times that avian 0.7 counts an impulse: it adds what a substep has pushed so far to `normal_impulse` after the substep's solving and again after
-/// its relaxing. What rests presses with its weight only then.
+/// Number of times that avian 0.7 counts an impulse: it adds what a substep has pushed so far to
+/// `normal_impulse` after the substep's solving and again after its relaxing. What rests presses
+/// with its weight only then.
 const COUNTED: f32 = 2.0;
 
 /// Listens to the physics; to be added after [`AsperityPlugin`](crate::AsperityPlugin).
@@ -85,7 +87,8 @@ fn told(v: Vector) -> Vec3 {
     Vec3::from_array(v.to_array())
 }
 
-/// The impulse-weighted mean of a pair's points; `None` when nothing presses. Two that nothing moves press with `nominal_n_s` where they overlap.
+/// The impulse-weighted mean of a pair's points; `None` when nothing presses. Two that nothing
+/// moves press with `nominal_n_s` where they overlap.
 fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
     let (mut point_m, mut normal) = (Vector::ZERO, Vector::ZERO);
     let (mut impulse_n_s, mut closing_m_s, mut restitution) = (0.0, 0.0f32, 0.0f32);

@@ -1,15 +1,18 @@
-//! Components: roles of entities in touch. Adding a component puts it into the scene, removing it or the entity takes it out.
+//! Components: roles of entities in touch. Adding a component puts it into the scene, removing it
+//! or the entity takes it out.
 
 use asperity::{Body, Material, Probe, Surface, UvMapping};
 use bevy_ecs::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// The entity rings: its modes and what it is made of. Inserted again, it replaces the body while it rings.
+/// The entity rings: its modes and what it is made of. Inserted again, it replaces the body while
+/// it rings.
 #[derive(Component, Debug, Clone)]
 pub struct TouchBody(pub Body);
 
-/// The entity can be stroked. The surface moves into the scene when the component is added, so the component holds nothing afterwards;
-/// inserted again, it replaces the surface under the contacts that slide on it.
+/// The entity can be stroked. The surface moves into the scene when the component is added, so the
+/// component holds nothing afterwards; inserted again, it replaces the surface under the contacts
+/// that slide on it.
 #[derive(Component)]
 pub struct TouchSurface {
     surface: Mutex<Option<Surface>>,
@@ -42,7 +45,8 @@ impl TouchSurface {
     }
 }
 
-/// The entity touches: a finger, a pen. Without it an entity that touches is the engine's own probe, felt by the first actuator.
+/// The entity touches: a finger, a pen. Without it an entity that touches is the engine's own
+/// probe, felt by the first actuator.
 #[derive(Component, Debug, Clone, Copy, Default)]
 pub struct TouchProbe {
     /// Probe; none = the engine's own.
@@ -59,16 +63,18 @@ impl TouchProbe {
     }
 }
 
-/// Role of a physics engine's collider in touch; put it on the entity that has the collider. It rings as the entity's
-/// [`TouchBody`], and what slides on it strokes the entity's [`TouchSurface`]. Colliders without it are not heard.
+/// Role of a physics engine's collider in touch; put it on the entity that has the collider. It
+/// rings as the entity's [`TouchBody`], and what slides on it strokes the entity's
+/// [`TouchSurface`]. Colliders without it are not heard.
 #[derive(Component, Debug, Clone, PartialEq)]
 pub struct TouchThing {
     /// Material.
     pub material: Material,
-    /// The plane of its surface in the collider's own space, m: the place of uv (0, 0), the edge along u, the edge along v. A collider with a
-    /// surface needs it, or a `mapping`.
+    /// The plane of its surface in the collider's own space, m: the place of uv (0, 0), the edge
+    /// along u, the edge along v. A collider with a surface needs it, or a `mapping`.
     pub plane_m: Option<[[f64; 3]; 3]>,
-    /// Mapping of places on it to texture coordinates, where that is no plane: by the normal, around a sphere or a cylinder.
+    /// Mapping of places on it to texture coordinates, where that is no plane: by the normal,
+    /// around a sphere or a cylinder.
     pub mapping: Option<UvMapping>,
     /// The haptic channel that feels what it touches: a finger, or a tool in the hand.
     pub actuator: Option<u16>,
@@ -76,7 +82,8 @@ pub struct TouchThing {
     pub radius_m: Option<f64>,
     /// Velocity of its surface in its own space, m/s: a conveyor belt.
     pub belt_m_s: [f32; 3],
-    /// With how much it presses on what nothing moves either, N: a kinematic hand on fixed ground, of which the physics tells no force.
+    /// With how much it presses on what nothing moves either, N: a kinematic hand on fixed ground,
+    /// of which the physics tells no force.
     pub nominal_force_n: f32,
 }
 
@@ -95,7 +102,8 @@ impl TouchThing {
         }
     }
 
-    /// Its surface lies on this plane of the collider: place of uv (0, 0), edge along u, edge along v, m.
+    /// Its surface lies on this plane of the collider: place of uv (0, 0), edge along u, edge along
+    /// v, m.
     #[must_use]
     pub fn plane(mut self, origin_m: [f64; 3], u_m: [f64; 3], v_m: [f64; 3]) -> Self {
         self.plane_m = Some([origin_m, u_m, v_m]);

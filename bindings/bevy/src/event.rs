@@ -3,10 +3,12 @@
 use asperity::{ContactSample, Impact};
 use bevy_ecs::prelude::*;
 
-/// Touch since the last fixed step. Written in any schedule; reported at the end of the next fixed step, with its time.
+/// Touch since the last fixed step. Written in any schedule; reported at the end of the next fixed
+/// step, with its time.
 #[derive(Message, Debug, Clone, Copy)]
 pub enum TouchEvent {
-    /// An entity lands on a surface. What touches, and who feels it, says its [`TouchProbe`](crate::TouchProbe).
+    /// An entity lands on a surface. What touches, and who feels it, says its
+    /// [`TouchProbe`](crate::TouchProbe).
     Begin {
         /// Finger.
         toucher: Entity,
@@ -31,7 +33,8 @@ pub enum TouchEvent {
     Impact {
         /// Body that rings.
         body: Entity,
-        /// Speed (m/s), mass (kg), radius (m) and material of what strikes; its `body` does not count.
+        /// Speed (m/s), mass (kg), radius (m) and material of what strikes; its `body` does not
+        /// count.
         impact: Impact,
     },
 }

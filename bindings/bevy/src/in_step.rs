@@ -1,4 +1,5 @@
-//! Observers: the scene is what the components say, from the command that adds one to the command that removes it.
+//! Observers: the scene is what the components say, from the command that adds one to the command
+//! that removes it.
 
 use crate::component::{TouchBody, TouchProbe, TouchSurface};
 use crate::touch::Touch;

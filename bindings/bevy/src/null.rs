@@ -1,5 +1,6 @@
-//! An output that nobody hears. At the end of each frame it renders as many samples as `Time<Real>` has gone on by, so that a test which
-//! sets the app's time by hand gets the same samples on every machine, and never sleeps.
+//! An output that nobody hears. At the end of each frame it renders as many samples as `Time<Real>`
+//! has gone on by, so that a test which sets the app's time by hand gets the same samples on every
+//! machine, and never sleeps.
 
 use asperity::Renderer;
 use bevy_ecs::prelude::*;

@@ -21,12 +21,13 @@ pub enum TouchSystems {
 
 /// Touch as sound and vibration.
 ///
-/// When the settings or the device are refused, the app goes on in silence: without the resource [`Touch`] nothing is touched, and the
-/// reason is logged as an error and comes as a [`TouchError`].
+/// When the settings or the device are refused, the app goes on in silence: without the resource
+/// [`Touch`] nothing is touched, and the reason is logged as an error and comes as a
+/// [`TouchError`].
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
-    /// Configuration of the engine; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 and one
-    /// haptic channel of 0.1 mm at full scale, with their limiters on.
+    /// Configuration of the engine; a device's rate wins over its own. By default live, 48 kHz, one
+    /// bus at a gain of 0.1 and one haptic channel of 0.1 mm at full scale, with their limiters on.
     pub config: Config,
     /// Destination of sound.
     pub output: Output,
@@ -34,7 +35,8 @@ pub struct AsperityPlugin {
 
 impl Default for AsperityPlugin {
     fn default() -> Self {
-        // Blows of a physics engine reach 20 times full scale where they are heard, more where they are felt, and a sound card clips at 1.
+        // Blows of a physics engine reach 20 times full scale where they are heard, more where they
+        // are felt, and a sound card clips at 1.
         let audio = vec![AudioBus { gain: 0.1, limit: true, ..AudioBus::default() }];
         let actuators = vec![ActuatorSettings { limit_peaks: true, ..ActuatorSettings::default() }];
         Self { config: Config { audio, actuators, ..Config::live(48_000.0) }, output: Output::default() }
@@ -105,7 +107,8 @@ impl AsperityPlugin {
     }
 }
 
-/// Says that nobody will hear anything: as a line of the log, and to systems that read refusals in the app's first frame.
+/// Says that nobody will hear anything: as a line of the log, and to systems that read refusals in
+/// the app's first frame.
 fn silent(app: &mut App, why: impl std::fmt::Display) {
     let text = format!("asperity plays nothing: {why}");
     log::error!("{text}");

@@ -1,8 +1,9 @@
-//! Contacts of `bevy_rapier3d`, converted by the crate `asperity-rapier`: every pair of colliders that have a
-//! [`TouchThing`](crate::TouchThing) strikes, scrapes or rolls.
+//! Contacts of `bevy_rapier3d`, converted by the crate `asperity-rapier`: every pair of colliders
+//! that have a [`TouchThing`](crate::TouchThing) strikes, scrapes or rolls.
 //!
-//! The physics plugin has to run in the fixed schedule (`RapierPhysicsPlugin::<()>::default().in_fixed_schedule()`) with
-//! `TimestepMode::Fixed` of one substep, because the solver keeps the impulses of the last substep only.
+//! The physics plugin has to run in the fixed schedule
+//! (`RapierPhysicsPlugin::<()>::default().in_fixed_schedule()`) with `TimestepMode::Fixed` of one
+//! substep, because the solver keeps the impulses of the last substep only.
 
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;

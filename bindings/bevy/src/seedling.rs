@@ -1,12 +1,15 @@
-//! asperity as a node of `bevy_seedling`'s Firewheel graph, so that the game's volumes, effects and panning apply.
+//! asperity as a node of `bevy_seedling`'s Firewheel graph, so that the game's volumes, effects and
+//! panning apply.
 //!
-//! One audio bus comes out left and right; of several, bus i comes out of output i. Haptic channels are no sound and do not
-//! belong into a mix: they leave by a port ([`Scene::open_port`](asperity::Scene::open_port)), or by
-//! [`Output::Device`](crate::Output) instead.
+//! One audio bus comes out left and right; of several, bus i comes out of output i. Haptic channels
+//! are no sound and do not belong into a mix: they leave by a port
+//! ([`Scene::open_port`](asperity::Scene::open_port)), or by [`Output::Device`](crate::Output)
+//! instead.
 //!
-//! The node starts silent. When the graph's rate is known, the next frame of the game designs the engine for it and lays the renderer into a
-//! slot; the processor *tries* the slot and never waits for it. A stream that starts anew, on another device for instance, gives the renderer back
-//! and has it designed for its own rate.
+//! The node starts silent. When the graph's rate is known, the next frame of the game designs the
+//! engine for it and lays the renderer into a slot; the processor *tries* the slot and never waits
+//! for it. A stream that starts anew, on another device for instance, gives the renderer back and
+//! has it designed for its own rate.
 
 use crate::touch::Touch;
 use asperity::Renderer;
@@ -25,7 +28,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Most actuators that are rendered beside the sound.
 const MAX_ACTUATORS: usize = 64;
 
-/// The node: one is spawned by [`Output::Seedling`](crate::Output); put an effect or a connection on its entity.
+/// The node: one is spawned by [`Output::Seedling`](crate::Output); put an effect or a connection
+/// on its entity.
 #[derive(Component, Clone)]
 pub struct TouchNode {
     slot: Arc<Mutex<Slot>>,

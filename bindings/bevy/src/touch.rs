@@ -1,4 +1,5 @@
-//! The game's half of the engine as a resource, and which entity is which body, surface, probe and contact.
+//! The game's half of the engine as a resource, and which entity is which body, surface, probe and
+//! contact.
 
 use crate::component::{TouchProbe, TouchSurface};
 use crate::event::{TouchError, TouchEvent};
@@ -67,7 +68,8 @@ impl Touch {
         self.surfaces.get(&entity).copied()
     }
 
-    /// Names of bodies, surfaces and probes in a recording: `body 0`, `surface 0`, … in the order in which they were added.
+    /// Names of bodies, surfaces and probes in a recording: `body 0`, `surface 0`, … in the order
+    /// in which they were added.
     #[must_use]
     pub fn names(&self) -> &Names {
         &self.names

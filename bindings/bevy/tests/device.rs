@@ -1,4 +1,5 @@
-//! The sound card's output, on a device that ALSA only pretends to have: `ALSA_CONFIG_PATH=tests/nobody.conf`.
+//! The sound card's output, on a device that ALSA only pretends to have:
+//! `ALSA_CONFIG_PATH=tests/nobody.conf`.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! The node in a Firewheel graph whose stream is driven by hand, a stretch after each frame: what comes out of the graph is what the recording
-//! renders, to the bit.
+//! The node in a Firewheel graph whose stream is driven by hand, a stretch after each frame: what
+//! comes out of the graph is what the recording renders, to the bit.
 
 mod common;
 
@@ -111,7 +111,8 @@ impl Stream {
     }
 }
 
-/// A finger strokes for two seconds and lifts; each frame is followed by what a device would take meanwhile.
+/// A finger strokes for two seconds and lifts; each frame is followed by what a device would take
+/// meanwhile.
 fn stroke(app: &mut App, stream: &mut Stream, plate: Entity) {
     let finger = app.world_mut().spawn(TouchProbe::felt_by(0)).id();
     for frame in 0..140 {

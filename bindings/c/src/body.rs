@@ -33,7 +33,8 @@ pub struct asp_mode {
     pub phase_rad: f64,
 }
 
-/// A body; `asp_body_init` fills it. Its modes are one of `stock`, `modes`, `modes_json` and those that `table` names; none = silent.
+/// A body; `asp_body_init` fills it. Its modes are one of `stock`, `modes`, `modes_json` and those
+/// that `table` names; none = silent.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_body {
@@ -49,7 +50,8 @@ pub struct asp_body {
     pub gain: f64,
     /// What `asp_find`, logs and recordings call it; NULL = nothing.
     pub name: *const c_char,
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door".
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can",
+    /// "bottle", "pan", "barrel" or "door".
     pub stock: *const c_char,
     /// Longest side or diameter of the stock shape, m.
     pub size_m: f64,
@@ -59,12 +61,14 @@ pub struct asp_body {
     pub impulse_n_s: f64,
     /// The text of a modes file.
     pub modes_json: *const c_char,
-    /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, …; the fields above count more.
+    /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, …; the
+    /// fields above count more.
     pub table: *const c_char,
     /// Where files lie that `table` names; NULL = the disk.
     pub files: *const asp_files,
-    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as `table` says, else as the level policy has found
-    /// for the bodies of a scene file, else 1. (Since 0.1.1.)
+    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
+    /// `table` says, else as the level policy has found for the bodies of a scene file, else 1.
+    /// (Since 0.1.1.)
     pub strike_gain: f64,
 }
 
@@ -163,7 +167,8 @@ impl asp_body {
     }
 }
 
-/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that never was fills nothing.
+/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that
+/// never was fills nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_init_body(body: *mut asp_body, size: u32) {
     sized::init_as(body, size);
@@ -192,7 +197,8 @@ pub unsafe extern "C" fn asp_add_body(scene: *mut asp_scene, body: *const asp_bo
     })
 }
 
-/// Gives a body other modes, material, bus and gain while it sounds; what rings rings out under the new. Its name stays.
+/// Gives a body other modes, material, bus and gain while it sounds; what rings rings out under the
+/// new. Its name stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_replace_body(scene: *mut asp_scene, id: u64, body: *const asp_body) -> i32 {
     enter(|| {
@@ -224,7 +230,8 @@ pub unsafe extern "C" fn asp_set_body_bus(scene: *mut asp_scene, id: u64, bus: u
     })
 }
 
-/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no longer. At most four: a bus for each listener.
+/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no
+/// longer. At most four: a bus for each listener.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_body_send(scene: *mut asp_scene, id: u64, bus: u32, gain: f64) -> i32 {
     enter(|| {

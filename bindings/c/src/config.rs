@@ -8,7 +8,8 @@ use crate::text;
 use asperity::{ActuatorSettings, AudioBus, ClockMode, Config, Engine, Isa};
 use std::ffi::c_char;
 
-/// Game seconds follow the device through pauses, restarts, slow motion and bursts of ticks: for a game that runs now.
+/// Game seconds follow the device through pauses, restarts, slow motion and bursts of ticks: for a
+/// game that runs now.
 pub const ASP_CLOCK_LIVE: u32 = 0;
 /// Sample = seconds times rate: for renders and replays.
 pub const ASP_CLOCK_EXACT: u32 = 1;
@@ -39,7 +40,8 @@ pub struct asp_config {
     pub sample_rate_hz: f64,
     /// Seed of the micro-noise; 0 = as `more` or the scene file says, else 1.
     pub seed: u64,
-    /// Haptic channels, 1 to 64; 0 = as `more` or the scene file says, else one of 0.1 mm at full scale.
+    /// Haptic channels, 1 to 64; 0 = as `more` or the scene file says, else one of 0.1 mm at full
+    /// scale.
     pub haptic_channels: u32,
     /// Audio buses, 1 to 64; 0 = as `more` or the scene file says, else one.
     pub audio_buses: u32,
@@ -47,8 +49,9 @@ pub struct asp_config {
     pub kernel: u32,
     /// 0.
     pub reserved: u32,
-    /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's defaults. The fields above count more.
-    /// Not beside a scene file, which says these things itself.
+    /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's
+    /// defaults. The fields above count more. Not beside a scene file, which says these things
+    /// itself.
     pub more: *const c_char,
 }
 

@@ -52,7 +52,8 @@ pub(crate) fn array<'a, T>(
         ));
     }
     aligned(first, name)?;
-    // SAFETY: not null and aligned, and not longer than memory can be; that so many are there is the caller's promise.
+    // SAFETY: not null and aligned, and not longer than memory can be; that so many are there is
+    // the caller's promise.
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
 
@@ -67,7 +68,8 @@ pub(crate) fn array_mut<'a, T>(
         return Ok(&mut []);
     }
     array(first.cast_const(), count, most, name)?;
-    // SAFETY: as in `array`, whose checks have passed; that nobody else uses it meanwhile is the caller's promise.
+    // SAFETY: as in `array`, whose checks have passed; that nobody else uses it meanwhile is the
+    // caller's promise.
     Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
 }
 

@@ -20,7 +20,8 @@ pub const ASP_END: u32 = 3;
 /// A rigid striker hits a body.
 pub const ASP_IMPACT: u32 = 4;
 
-/// One report; `asp_event_init` fills it with "not told", `asp_begin`, `asp_move`, `asp_end` and `asp_impact` with the usual.
+/// One report; `asp_event_init` fills it with "not told", `asp_begin`, `asp_move`, `asp_end` and
+/// `asp_impact` with the usual.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_event {
@@ -42,7 +43,8 @@ pub struct asp_event {
     pub probe: u64,
     /// begin, impact: the haptic channel that feels it; −1 = nobody.
     pub actuator: i32,
-    /// impact: what the striker is made of, ASP_MATERIAL_…; ASP_MATERIAL_CUSTOM = as the three striker_ numbers say.
+    /// impact: what the striker is made of, ASP_MATERIAL_…; ASP_MATERIAL_CUSTOM = as the three
+    /// striker_ numbers say.
     pub striker: u32,
     /// impact: which of the body's strike positions, from 0.
     pub position: u32,
@@ -56,7 +58,8 @@ pub struct asp_event {
     pub normal_force_n: f64,
     /// begin: approach speed at landing, m/s.
     pub closing_m_s: f64,
-    /// begin, move: how deep the tip stands below the untouched surface, m, where that gives way; NAN = the force counts.
+    /// begin, move: how deep the tip stands below the untouched surface, m, where that gives way;
+    /// NAN = the force counts.
     pub depth_m: f64,
     /// Place in the body's frame, m; NAN = not told.
     pub at_m: [f64; 3],
@@ -80,8 +83,8 @@ pub struct asp_event {
     pub striker_poisson: f64,
     /// Its density, kg/m³.
     pub striker_density_kg_m3: f64,
-    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN = as fast as it moves: a stroke. Each
-    /// report tells it anew. (Since 0.1.1.)
+    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN
+    /// = as fast as it moves: a stroke. Each report tells it anew. (Since 0.1.1.)
     pub slip_m_s: f64,
     /// begin, move: radius of what rolls, m; NAN = the probe's tip, at least 8 mm. (Since 0.1.1.)
     pub roll_radius_m: f64,
@@ -277,8 +280,8 @@ impl asp_event {
     }
 }
 
-/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an
-/// impact. A size that never was fills nothing.
+/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free
+/// blow of 4 g of steel at 1 m/s where it is an impact. A size that never was fills nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_init_event(event: *mut asp_event, size: u32) {
     sized::init_as(event, size);

@@ -21,8 +21,9 @@ pub struct asp_sink {
     picture: Option<Picture>,
 }
 
-/// Asked for the file at `path` (as the scene writes it, relative to the scene file). Puts its bytes with `asp_sink_bytes`, or a decoded
-/// picture with `asp_sink_picture`, and gives 0; anything else: there is no such file.
+/// Asked for the file at `path` (as the scene writes it, relative to the scene file). Puts its
+/// bytes with `asp_sink_bytes`, or a decoded picture with `asp_sink_picture`, and gives 0; anything
+/// else: there is no such file.
 pub type asp_read =
     Option<unsafe extern "C" fn(user: *mut c_void, path: *const c_char, sink: *mut asp_sink) -> i32>;
 
@@ -36,7 +37,8 @@ pub struct asp_files {
     pub reserved: u32,
     /// Given to `read` as it is.
     pub user: *mut c_void,
-    /// Called on the thread that asked for something to be loaded, before that call returns; NULL = the disk.
+    /// Called on the thread that asked for something to be loaded, before that call returns; NULL =
+    /// the disk.
     pub read: asp_read,
 }
 
@@ -85,7 +87,8 @@ fn sink_of<'a>(sink: *mut asp_sink) -> Result<&'a mut asp_sink, Failure> {
         let right = "give the one that asp_read was called with, before it returns";
         return Err(Failure::new(ASP_BAD_ARGUMENT, format!("sink: is not open; {right}")));
     }
-    // SAFETY: it is the address that `ask` has put there, whose sink lives until `ask` takes it away again.
+    // SAFETY: it is the address that `ask` has put there, whose sink lives until `ask` takes it
+    // away again.
     Ok(unsafe { &mut *sink })
 }
 

@@ -1,12 +1,14 @@
-//! Handle table: what a C program holds is a number, never an address, so that every wrong one can be told.
+//! Handle table: what a C program holds is a number, never an address, so that every wrong one can
+//! be told.
 //!
 //! ```text
 //! handle = (generation xor copy) · 2¹³ + place · 2³ + kind        place < 1024, kind 1…4
 //! ```
 //!
-//! A place's generation grows each time it is used again, so a handle that was freed never names what came after it. `copy` follows from where
-//! the table lies: where a library is loaded from two files, the handles of one are none of the other's. One word a place
-//! says who may use it; it is taken by a single compare-and-swap, by the audio thread as well: nobody ever waits for it.
+//! A place's generation grows each time it is used again, so a handle that was freed never names
+//! what came after it. `copy` follows from where the table lies: where a library is loaded from two
+//! files, the handles of one are none of the other's. One word a place says who may use it; it is
+//! taken by a single compare-and-swap, by the audio thread as well: nobody ever waits for it.
 
 use crate::status::{ASP_BAD_HANDLE, ASP_BUSY, ASP_FULL, ASP_PANIC, Failure};
 use std::cell::UnsafeCell;
@@ -35,7 +37,8 @@ mod phase {
 
 struct Slot<T> {
     word: AtomicU64,
-    /// The generation that somebody waits to free, 0 = none: nobody else begins a call with it, or threads without pause would keep it for ever.
+    /// The generation that somebody waits to free, 0 = none: nobody else begins a call with it, or
+    /// threads without pause would keep it for ever.
     closing: AtomicU64,
     value: UnsafeCell<Option<Box<T>>>,
 }
@@ -49,7 +52,8 @@ pub(crate) struct Table<T> {
     next: AtomicUsize,
 }
 
-// SAFETY: a value is touched only by whoever has swapped its word from IDLE, POISONED or FREE to IN_USE, and until he swaps it back.
+// SAFETY: a value is touched only by whoever has swapped its word from IDLE, POISONED or FREE to
+// IN_USE, and until he swaps it back.
 unsafe impl<T: Send> Sync for Table<T> {}
 
 /// The right to use what a handle names.
@@ -117,8 +121,8 @@ impl<T: Send> Table<T> {
         self.place(handle).map(|(index, _)| index)
     }
 
-    /// Takes what a handle names, unless somebody else has it. It neither waits nor allocates; the reason is a phase, for
-    /// `hold` to put into words.
+    /// Takes what a handle names, unless somebody else has it. It neither waits nor allocates; the
+    /// reason is a phase, for `hold` to put into words.
     pub(crate) fn try_hold(&self, handle: usize) -> Result<Held<'_, T>, Option<u64>> {
         let (index, generation) = self.place(handle).ok_or(None)?;
         self.begin(index, generation)
@@ -173,7 +177,8 @@ impl<T: Send> Table<T> {
         self.try_hold(handle).map_err(|why| self.refusal(why))
     }
 
-    /// Takes the value out for good. Waits, for a while, until no other thread is inside a call with it.
+    /// Takes the value out for good. Waits, for a while, until no other thread is inside a call
+    /// with it.
     pub(crate) fn remove(&self, handle: usize) -> Result<Box<T>, Failure> {
         let (index, generation) = self.place(handle).ok_or(None).map_err(|why| self.refusal(why))?;
         let slot = &self.slots[index];

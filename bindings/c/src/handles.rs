@@ -53,7 +53,8 @@ pub(crate) struct AudioHalf {
     pub(crate) renderer: Option<Renderer>,
     pub(crate) haptic: Vec<Vec<f32>>,
     pub(crate) audio: Vec<Vec<f32>>,
-    /// The tick of a mixer that was rendered last, so that two effects do not render one engine twice.
+    /// The tick of a mixer that was rendered last, so that two effects do not render one engine
+    /// twice.
     pub(crate) tick: Option<u64>,
 }
 
@@ -83,13 +84,15 @@ fn free<T: Send>(table: &Table<T>, handle: usize) -> i32 {
     })
 }
 
-/// Frees a scene; null is nothing. Its renderer and ports may live on: they ring out. Not on the audio thread.
+/// Frees a scene; null is nothing. Its renderer and ports may live on: they ring out. Not on the
+/// audio thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_scene_free(scene: *mut asp_scene) -> i32 {
     free(&SCENES, scene as usize)
 }
 
-/// Frees a renderer; null is nothing. Waits until no other thread renders with it. Not on the audio thread.
+/// Frees a renderer; null is nothing. Waits until no other thread renders with it. Not on the audio
+/// thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_renderer_free(renderer: *mut asp_renderer) -> i32 {
     free(&RENDERERS, renderer as usize)

@@ -36,7 +36,8 @@ pub unsafe extern "C" fn asp_set_bus_gain(scene: *mut asp_scene, bus: u32, gain:
     set(scene, |scene| scene.set_audio_gain(bus as usize, gain))
 }
 
-/// All that is felt and heard fades within 20 ms (not 0), or comes back (0); everything goes on meanwhile.
+/// All that is felt and heard fades within 20 ms (not 0), or comes back (0); everything goes on
+/// meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_muted(scene: *mut asp_scene, muted: u32) -> i32 {
     set(scene, |scene| scene.set_muted(muted != 0))
@@ -48,13 +49,15 @@ pub unsafe extern "C" fn asp_set_paused(scene: *mut asp_scene, paused: u32) -> i
     set(scene, |scene| if paused == 0 { scene.resume() } else { scene.pause() })
 }
 
-/// Every contact ends and what rings is damped within a tenth of a second: for a cut, a menu, the end of a level.
+/// Every contact ends and what rings is damped within a tenth of a second: for a cut, a menu, the
+/// end of a level.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_fade_all(scene: *mut asp_scene) -> i32 {
     set(scene, Scene::fade_all)
 }
 
-/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_… `of` says of what.
+/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_…
+/// `of` says of what.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_get_level(scene: *mut asp_scene, kind: u32, of: u64, level: *mut f64) -> i32 {
     enter(|| {

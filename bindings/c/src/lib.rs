@@ -1,4 +1,5 @@
-//! The C interface: every function of `asperity.h`, a handful of flat structs, four kinds of handles.
+//! The C interface: every function of `asperity.h`, a handful of flat structs, four kinds of
+//! handles.
 //!
 //! | rule | how it is kept |
 //! |---|---|
@@ -8,10 +9,12 @@
 //! | a panic never leaves, and its handle is silent from then on | `entry` |
 //! | nothing fallible, no memory, no lock on the audio thread | `render`, `port` |
 //!
-//! Pointers must be null or point to what their type says, for as long as the call lasts (strings end with a zero byte, arrays have the
-//! count that is given beside them). Everything else may be wrong, and is answered.
+//! Pointers must be null or point to what their type says, for as long as the call lasts (strings
+//! end with a zero byte, arrays have the count that is given beside them). Everything else may be
+//! wrong, and is answered.
 
-// This is the one crate that hands out raw pointers; the promise that makes every call sound is the one above.
+// This is the one crate that hands out raw pointers; the promise that makes every call sound is the
+// one above.
 #![allow(unsafe_code)]
 #![allow(clippy::missing_safety_doc, reason = "the promise is the same for every function, and stands above")]
 #![allow(non_camel_case_types, reason = "C names")]

@@ -21,9 +21,10 @@ pub const ASP_BODY: u32 = 2;
 /// A probe.
 pub const ASP_PROBE: u32 = 3;
 
-/// Builds the engine of a scene file. `text` NULL: `path` is read from `files`; else `text` is the scene, and `path` says only where it
-/// would lie. `files` NULL: the disk. Of `config` (NULL: the defaults) clock, rate, seed and kernel count. With a live clock, sand is
-/// simulated on threads of its own and every bus has a limiter, as before a sound card.
+/// Builds the engine of a scene file. `text` NULL: `path` is read from `files`; else `text` is the
+/// scene, and `path` says only where it would lie. `files` NULL: the disk. Of `config` (NULL: the
+/// defaults) clock, rate, seed and kernel count. With a live clock, sand is simulated on threads of
+/// its own and every bus has a limiter, as before a sound card.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_load(
     path: *const c_char,
@@ -68,7 +69,8 @@ pub unsafe extern "C" fn asp_load(
     })
 }
 
-/// The id of a surface, body or probe by its name in the scene file, or by the name it was added with.
+/// The id of a surface, body or probe by its name in the scene file, or by the name it was added
+/// with.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_find(
     scene: *mut asp_scene,

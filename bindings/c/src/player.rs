@@ -154,8 +154,9 @@ pub unsafe extern "C" fn asp_player_report_init(report: *mut asp_player_report) 
     sized::init(report);
 }
 
-/// Plays until `asp_player_stop`. The renderer belongs to the player from then on: its handle ends, also where the device refuses. Where a
-/// sentence is refused before (a map, a build without sound cards) it stays.
+/// Plays until `asp_player_stop`. The renderer belongs to the player from then on: its handle ends,
+/// also where the device refuses. Where a sentence is refused before (a map, a build without sound
+/// cards) it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_play(
     renderer: *mut asp_renderer,
@@ -184,7 +185,8 @@ pub unsafe extern "C" fn asp_play(
     })
 }
 
-/// Which device plays, or why nobody hears it. `size` is the room in `words`, bytes; what does not fit is cut.
+/// Which device plays, or why nobody hears it. `size` is the room in `words`, bytes; what does not
+/// fit is cut.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_player_device(player: *mut asp_player, words: *mut c_char, size: u32) -> i32 {
     enter(|| {

@@ -209,7 +209,8 @@ pub unsafe extern "C" fn asp_port_points(port: *mut asp_port, points: *mut asp_p
     })
 }
 
-/// The newest levels of a heavy and a light motor, as peaks of sines in the unit of the samples; 0 where there are none.
+/// The newest levels of a heavy and a light motor, as peaks of sines in the unit of the samples; 0
+/// where there are none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_port_levels(port: *mut asp_port, heavy: *mut f64, light: *mut f64) {
     let levels: [f64; 2] = reading(port, |port| match port {

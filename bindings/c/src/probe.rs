@@ -8,8 +8,9 @@ use crate::text;
 use asperity::Scene;
 use std::ffi::c_char;
 
-/// Adds a probe and gives its id, which is never 0. `table` is what a scene file's `[[probe]]` says, TOML: preset = "stylus" (fingertip,
-/// fingernail, stylus, sole, rigid), and what differs from it. `name` may be NULL. It stays as long as the scene.
+/// Adds a probe and gives its id, which is never 0. `table` is what a scene file's `[[probe]]`
+/// says, TOML: preset = "stylus" (fingertip, fingernail, stylus, sole, rigid), and what differs
+/// from it. `name` may be NULL. It stays as long as the scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_add_probe(
     scene: *mut asp_scene,

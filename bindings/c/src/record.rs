@@ -10,7 +10,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Records from now on, in memory, what is reported and how the scene is edited, each with the time at which the engine applies it.
+/// Records from now on, in memory, what is reported and how the scene is edited, each with the time
+/// at which the engine applies it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_record_start(scene: *mut asp_scene) -> i32 {
     enter(|| {
@@ -21,7 +22,8 @@ pub unsafe extern "C" fn asp_record_start(scene: *mut asp_scene) -> i32 {
     })
 }
 
-/// Ends the recording and writes it to `path` (JSON Lines); it is whole or not there. NULL throws it away.
+/// Ends the recording and writes it to `path` (JSON Lines); it is whole or not there. NULL throws
+/// it away.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_record_stop(scene: *mut asp_scene, path: *const c_char) -> i32 {
     enter(|| {

@@ -1,4 +1,5 @@
-//! Render: what the audio thread calls. Nothing here fails, allocates, locks or waits; where anything is wrong it is silent.
+//! Render: what the audio thread calls. Nothing here fails, allocates, locks or waits; where
+//! anything is wrong it is silent.
 
 use crate::config::{ASP_MAX_BUSES, ASP_MAX_CHANNELS, CHUNK_FRAMES};
 use crate::entry::{enter, out};
@@ -16,7 +17,8 @@ pub const ASP_SILENT: i32 = -1;
 pub const ASP_HAPTIC: i32 = 1000;
 
 impl AudioHalf {
-    /// Renders the next frames, at most a chunk, into the memory of this half. Hands out no slice that a program also has.
+    /// Renders the next frames, at most a chunk, into the memory of this half. Hands out no slice
+    /// that a program also has.
     pub(crate) fn render(&mut self, frames: usize) {
         let mut haptic: [&mut [f32]; ASP_MAX_CHANNELS as usize] = std::array::from_fn(|_| &mut [][..]);
         let mut audio: [&mut [f32]; ASP_MAX_BUSES as usize] = std::array::from_fn(|_| &mut [][..]);
@@ -75,14 +77,16 @@ impl Planes {
             return;
         }
         for (index, x) in samples.enumerate() {
-            // SAFETY: the plane has as many frames as the caller has said, and no slice of it is made, so that planes may be the same.
+            // SAFETY: the plane has as many frames as the caller has said, and no slice of it is
+            // made, so that planes may be the same.
             unsafe { plane.add(at + index).write(x) };
         }
     }
 }
 
-/// Renders the next `frames`: haptic channel i into `haptic[i]`, audio bus i into `audio[i]`. Pointers may be NULL, and channels that the
-/// engine does not have are silent. A handle that cannot be used, more than 64 channels or more than 2²⁴ frames: silence, or nothing.
+/// Renders the next `frames`: haptic channel i into `haptic[i]`, audio bus i into `audio[i]`.
+/// Pointers may be NULL, and channels that the engine does not have are silent. A handle that
+/// cannot be used, more than 64 channels or more than 2²⁴ frames: silence, or nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_render(
     renderer: *mut asp_renderer,
@@ -118,8 +122,9 @@ pub unsafe extern "C" fn asp_render(
     }
 }
 
-/// Renders the next `frames` into an interleaved buffer of `channels` channels. `map[c]` says what channel c carries: an audio bus,
-/// ASP_HAPTIC + a haptic channel, or ASP_SILENT. `map` NULL: all buses on channels 0 and 1, haptic channels from 2 on.
+/// Renders the next `frames` into an interleaved buffer of `channels` channels. `map[c]` says what
+/// channel c carries: an audio bus, ASP_HAPTIC + a haptic channel, or ASP_SILENT. `map` NULL: all
+/// buses on channels 0 and 1, haptic channels from 2 on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_render_interleaved(
     renderer: *mut asp_renderer,
@@ -181,8 +186,8 @@ impl AudioHalf {
     }
 }
 
-/// Tells the engine which share of its time the last block took (1 = all of it); above that the least audible work is left out. For the
-/// audio thread.
+/// Tells the engine which share of its time the last block took (1 = all of it); above that the
+/// least audible work is left out. For the audio thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_report_load(renderer: *mut asp_renderer, load: f32) {
     guarded(|| {
@@ -194,8 +199,9 @@ pub unsafe extern "C" fn asp_report_load(renderer: *mut asp_renderer, load: f32)
     });
 }
 
-/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples all of them lag behind the stamps of
-/// their events (sound by two samples of the rate inside more). Any of the places may be NULL.
+/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples
+/// all of them lag behind the stamps of their events (sound by two samples of the rate inside
+/// more). Any of the places may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_signals(
     renderer: *mut asp_renderer,
@@ -224,7 +230,8 @@ fn moved() -> Failure {
     Failure::new(ASP_REFUSED, "renderer: has no engine any more; build another one")
 }
 
-/// Goes on at another rate, after a headset was plugged in: ids, contacts and gains stay, ports end. Not while the audio thread renders.
+/// Goes on at another rate, after a headset was plugged in: ids, contacts and gains stay, ports
+/// end. Not while the audio thread renders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_sample_rate(
     scene: *mut asp_scene,

@@ -23,8 +23,9 @@ fn refusal(at: u32, reason: &Refusal) -> Failure {
     Failure::new(status, format!("event {at}: {reason}"))
 }
 
-/// Reports what happened at game time `time_s`: `count` events of `size` bytes each (sizeof(asp_event)). All are tried; `taken` (may be
-/// NULL) is how many were accepted, and the first refusal is the status. Never blocks.
+/// Reports what happened at game time `time_s`: `count` events of `size` bytes each
+/// (sizeof(asp_event)). All are tried; `taken` (may be NULL) is how many were accepted, and the
+/// first refusal is the status. Never blocks.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_report(
     scene: *mut asp_scene,
@@ -66,14 +67,15 @@ pub unsafe extern "C" fn asp_report(
     })
 }
 
-/// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time. For a level that restarts, under
-/// the exact clock; a live one finds out by itself.
+/// Game time begins anew: the next report holds at the sample that is rendered next, whatever its
+/// time. For a level that restarts, under the exact clock; a live one finds out by itself.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_reset(scene: *mut asp_scene) -> i32 {
     enter(|| SCENES.hold(scene as usize)?.scene.reset().map_err(|error| refused(&error)))
 }
 
-/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact clock.
+/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
+/// clock.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_time_scale(scene: *mut asp_scene, scale: f64) -> i32 {
     enter(|| SCENES.hold(scene as usize)?.scene.set_time_scale(scale).map_err(|error| refused(&error)))

@@ -1,8 +1,11 @@
-//! Sized structs: each begins with its own size, so that a program and a library of different ages understand each other.
+//! Sized structs: each begins with its own size, so that a program and a library of different ages
+//! understand each other.
 //!
-//! A struct only ever grows at its end. The library knows every size it has shipped: what a program's older struct lacks has its default,
-//! and a size that never was is refused instead of read. From the day on which a struct grows it is filled by `asp_init_…`, which is told the
-//! size and which the header calls; `asp_…_init` of the library goes on for programs of before, and fills what they have room for.
+//! A struct only ever grows at its end. The library knows every size it has shipped: what a
+//! program's older struct lacks has its default, and a size that never was is refused instead of
+//! read. From the day on which a struct grows it is filled by `asp_init_…`, which is told the size
+//! and which the header calls; `asp_…_init` of the library goes on for programs of before, and
+//! fills what they have room for.
 
 use crate::entry::aligned;
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
@@ -62,7 +65,8 @@ pub(crate) fn write<T: Sized32>(value: &T, to: *mut T, name: &str) -> Result<(),
 
 /// Writes a struct of that size, which was shipped.
 pub(crate) fn put<T: Sized32>(value: &T, to: *mut T, size: u32) {
-    // SAFETY: a size that was shipped is at most our own, and the caller's struct has it; the fields follow the size in front.
+    // SAFETY: a size that was shipped is at most our own, and the caller's struct has it; the
+    // fields follow the size in front.
     unsafe {
         to.cast::<u32>().write(size);
         std::ptr::copy_nonoverlapping(

@@ -64,7 +64,8 @@ pub struct asp_stats {
     pub contacts: u64,
     /// By how much the peak limiters have turned down at most, whole dB. (Since 0.1.1.)
     pub limiter_db: u64,
-    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples. (Since 0.1.1.)
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
+    /// samples. (Since 0.1.1.)
     pub rubs_crowded_out: u64,
 }
 
@@ -135,7 +136,8 @@ impl asp_stats {
 /// Most characters of a text that is asked for.
 const MAX_TEXT: usize = 1 << 20;
 
-/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills nothing.
+/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills
+/// nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_init_stats(stats: *mut asp_stats, size: u32) {
     sized::init_as(stats, size);
@@ -166,8 +168,8 @@ pub unsafe extern "C" fn asp_bus_peaks(scene: *mut asp_scene, peaks: *mut f32, c
     })
 }
 
-/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when nothing does. `size` is the room in
-/// `reasons`, bytes; what does not fit is cut.
+/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when
+/// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
     enter(|| {
@@ -186,7 +188,8 @@ pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_c
     })
 }
 
-/// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL) is how many things.
+/// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL)
+/// is how many things.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_collect(scene: *mut asp_scene, freed: *mut u32) -> i32 {
     enter(|| {

@@ -1,7 +1,7 @@
 //! Status: what a call answers, and the sentence that goes with it.
 //!
-//! 0 is well, below 0 is a kind of refusal. The sentence is kept for each thread until its next call; it names the field, what is wrong
-//! with it and what would be right.
+//! 0 is well, below 0 is a kind of refusal. The sentence is kept for each thread until its next
+//! call; it names the field, what is wrong with it and what would be right.
 
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};
@@ -59,7 +59,8 @@ pub(crate) fn keep(sentence: Option<&str>) {
     let _ = LAST.try_with(|last| last.replace(text));
 }
 
-/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds until the thread's next call.
+/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds
+/// until the thread's next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_last_error() -> *const c_char {
     let text = LAST.try_with(|last| last.borrow().as_ref().map(|text| text.as_ptr()));

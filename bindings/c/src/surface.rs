@@ -33,8 +33,9 @@ pub const ASP_CHANNEL_B: u32 = 3;
 /// Alpha.
 pub const ASP_CHANNEL_A: u32 = 4;
 
-/// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the body's material or the engine's default
-/// says it. Without `heights` and without a source in `table` it is a plane with the finish of its body's material.
+/// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the
+/// body's material or the engine's default says it. Without `heights` and without a source in
+/// `table` it is a plane with the finish of its body's material.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_surface {
@@ -50,7 +51,8 @@ pub struct asp_surface {
     pub width_m: f64,
     /// What uv 0 to 1 spans along v, m.
     pub height_m: f64,
-    /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are metres.
+    /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are
+    /// metres.
     pub relief_m: f64,
     /// Displacement map.
     pub heights: asp_image,
@@ -68,7 +70,8 @@ pub struct asp_surface {
     pub friction: f64,
     /// How far it gives way, m/N; 0 = hard.
     pub compliance_m_n: f64,
-    /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { … }, files of maps, …; the fields above count more.
+    /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { … }, files of maps,
+    /// …; the fields above count more.
     pub table: *const c_char,
     /// Where files lie that `table` names; NULL = the disk.
     pub files: *const asp_files,

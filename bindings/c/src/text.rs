@@ -20,7 +20,8 @@ pub(crate) fn needed<'a>(text: *const c_char, name: &str) -> Result<&'a str, Fai
         .ok_or_else(|| Failure::new(ASP_BAD_ARGUMENT, format!("{name}: is null; must be a text")))
 }
 
-/// Copies a text into a program's memory, cut to fit, with a zero byte behind it. Gives the length of the whole text.
+/// Copies a text into a program's memory, cut to fit, with a zero byte behind it. Gives the length
+/// of the whole text.
 pub(crate) fn copy(text: &str, to: &mut [u8]) -> usize {
     if let Some(room) = to.len().checked_sub(1) {
         let mut end = text.len().min(room);

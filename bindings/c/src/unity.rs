@@ -1,4 +1,5 @@
-//! Unity mixer effect: the same library, named `audioplugin…`, plays an engine's buses into the mixer group that it is put on.
+//! Unity mixer effect: the same library, named `audioplugin…`, plays an engine's buses into the
+//! mixer group that it is put on.
 //!
 //! | of the native plug-in interface 1.4, 64-bit | bytes |
 //! |---|---|
@@ -6,8 +7,8 @@
 //! | effect definition: `process` at 88 | 136 |
 //! | parameter definition | 64 |
 //!
-//! The effect finds its engine by a parameter, a small whole number that `asp_unity_slot` gives; no pointer ever travels as a float.
-//! Haptic channels leave by ports.
+//! The effect finds its engine by a parameter, a small whole number that `asp_unity_slot` gives; no
+//! pointer ever travels as a float. Haptic channels leave by ports.
 
 use crate::config::CHUNK_FRAMES;
 use crate::entry::{enter, out};
@@ -126,7 +127,8 @@ unsafe extern "C" fn release(state: *mut UnityAudioEffectState) -> c_int {
     if state.is_null() || !state.is_aligned() {
         return UNSUPPORTED;
     }
-    // SAFETY: what `create` has put there, taken away before it is freed; the mixer does not process any more.
+    // SAFETY: what `create` has put there, taken away before it is freed; the mixer does not
+    // process any more.
     unsafe {
         let data = std::mem::replace(&mut (*state).effectdata, std::ptr::null_mut());
         if !data.is_null() {
@@ -321,7 +323,8 @@ pub unsafe extern "C" fn UnityGetAudioEffectDefinitions(
     made.list.len() as c_int
 }
 
-/// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter "Engine".
+/// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter
+/// "Engine".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_unity_slot(renderer: *mut asp_renderer, slot: *mut u32) -> i32 {
     enter(|| {

@@ -14,7 +14,8 @@ use crate::status::{ASP_ABI_MISMATCH, Failure};
 use crate::surface::asp_surface;
 use std::mem::size_of;
 
-/// Version of the interface: a program that was compiled with another one is refused by `asp_check_abi`.
+/// Version of the interface: a program that was compiled with another one is refused by
+/// `asp_check_abi`.
 pub const ASP_ABI: u32 = 1;
 
 /// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
@@ -50,9 +51,11 @@ pub extern "C" fn asp_version() -> u32 {
         | part(env!("CARGO_PKG_VERSION_PATCH"))
 }
 
-/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`, `sizes` those of its structs in the order
-/// config, files, image, mode, body, surface, event, stats, port_config, point, force, player_config, player_report. One sentence
-/// instead of a crash where a library lies beside another one's header; structs of an older header of this interface are understood.
+/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`,
+/// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
+/// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
+/// where a library lies beside another one's header; structs of an older header of this interface
+/// are understood.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) -> i32 {
     enter(|| {

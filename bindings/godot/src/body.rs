@@ -7,12 +7,13 @@ use godot::classes::INode3D;
 use godot::prelude::*;
 use toml::Value;
 
-/// A body that rings, as the child of a physics body, and the surface that a finger touches on it. It joins the world when it is ready
-/// and leaves it with the tree.
+/// A body that rings, as the child of a physics body, and the surface that a finger touches on it.
+/// It joins the world when it is ready and leaves it with the tree.
 #[derive(GodotClass)]
 #[class(init, base = Node3D)]
 pub struct AsperityBody {
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door"; empty: `modes_file` or `table` says, or it is silent.
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can",
+    /// "bottle", "pan", "barrel" or "door"; empty: `modes_file` or `table` says, or it is silent.
     #[export]
     #[init(val = "plate".into())]
     stock: GString,
@@ -31,7 +32,8 @@ pub struct AsperityBody {
     #[export]
     #[init(val = 1.0)]
     gain: f64,
-    /// How loud blows are beside strokes, linear, 0 to 1000; 1: as mechanics says. Below 0: as `table` says, or as the world's scene file has it.
+    /// How loud blows are beside strokes, linear, 0 to 1000; 1: as mechanics says. Below 0: as
+    /// `table` says, or as the world's scene file has it.
     #[export]
     #[init(val = -1.0)]
     strike_gain: f64,

@@ -32,7 +32,8 @@ pub(crate) fn velocity(told: Vector2) -> Option<Vector2> {
     Some(told).filter(|v| !(v.x.is_nan() && v.y.is_nan()))
 }
 
-/// How much of a contact's motion is slip, m/s, and the radius of what rolls, m; not told: it is a stroke, with the probe's tip.
+/// How much of a contact's motion is slip, m/s, and the radius of what rolls, m; not told: it is a
+/// stroke, with the probe's tip.
 #[derive(Clone, Copy)]
 pub(crate) struct Rolling {
     pub slip_m_s: f64,
@@ -44,7 +45,8 @@ impl Rolling {
     pub(crate) const NONE: Self = Self { slip_m_s: NOT_TOLD, radius_m: NOT_TOLD };
 }
 
-/// A contact at a place, pressed by so many newtons; how fast it moves, the engine finds out unless it is told.
+/// A contact at a place, pressed by so many newtons; how fast it moves, the engine finds out unless
+/// it is told.
 pub(crate) fn sample(
     uv: Vector2,
     force_n: f64,

@@ -7,8 +7,9 @@ use crate::world::AsperityWorld;
 use godot::classes::{INode3D, Mesh, MeshInstance3D, PhysicsRayQueryParameters3D};
 use godot::prelude::*;
 
-/// A finger tip: every physics tick it casts a ray along its own -Y, and reports what it touches: the collider's `AsperityBody`, at the
-/// texture coordinates of the collider's `MeshInstance3D`; of one that has none, on the side that its normal is nearest to, in metres.
+/// A finger tip: every physics tick it casts a ray along its own -Y, and reports what it touches:
+/// the collider's `AsperityBody`, at the texture coordinates of the collider's `MeshInstance3D`; of
+/// one that has none, on the side that its normal is nearest to, in metres.
 #[derive(GodotClass)]
 #[class(init, base = Node3D)]
 pub struct AsperityFinger3D {
@@ -75,11 +76,13 @@ impl AsperityFinger3D {
 
 impl AsperityFinger3D {
     fn contact(&self) -> i64 {
-        // Instance ids have their highest bit set for reference-counted objects only; nodes stay positive.
+        // Instance ids have their highest bit set for reference-counted objects only; nodes stay
+        // positive.
         self.base().instance_id().to_i64() & i64::MAX
     }
 
-    /// The world it touches in: the one that it knows, or, where that was freed, the tree's next one.
+    /// The world it touches in: the one that it knows, or, where that was freed, the tree's next
+    /// one.
     fn living_world(&mut self) -> Option<Gd<AsperityWorld>> {
         // Asked before it is cloned: a freed one cannot be.
         if self.world.as_ref().is_some_and(|world| !world.is_instance_valid()) {
@@ -208,7 +211,8 @@ impl AsperityFinger3D {
     }
 }
 
-/// What the finger touches: a surface, where, and how u and v run there in the space of what is touched, of length 1.
+/// What the finger touches: a surface, where, and how u and v run there in the space of what is
+/// touched, of length 1.
 #[derive(Clone, Copy)]
 struct Hit {
     surface: i64,

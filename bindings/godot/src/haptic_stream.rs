@@ -1,4 +1,5 @@
-//! `AsperityHapticStream`: two haptic channels as a stereo stream, for a bus that leads to actuators.
+//! `AsperityHapticStream`: two haptic channels as a stereo stream, for a bus that leads to
+//! actuators.
 
 use crate::frames::{self, CHUNK_FRAMES};
 use asperity::live::ports::PcmPort;
@@ -11,8 +12,9 @@ use std::sync::{Arc, Mutex};
 /// Where ports wait that nobody plays. The audio thread never looks here.
 pub(crate) type Ports = Arc<Mutex<Option<[Option<PcmPort>; 2]>>>;
 
-/// Two haptic channels of an `AsperityWorld`, left and right. `AsperityWorld.haptic_stream(left, right)` gives it. It follows the
-/// world's `AsperityStream`, which renders: without that it is silent.
+/// Two haptic channels of an `AsperityWorld`, left and right. `AsperityWorld.haptic_stream(left,
+/// right)` gives it. It follows the world's `AsperityStream`, which renders: without that it is
+/// silent.
 #[derive(GodotClass)]
 #[class(init, base = AudioStream)]
 pub struct AsperityHapticStream {

@@ -1,4 +1,5 @@
-//! asperity in Godot 4: nodes that report what is touched, and audio streams that sound and vibrate.
+//! asperity in Godot 4: nodes that report what is touched, and audio streams that sound and
+//! vibrate.
 //!
 //! | file | what a project does with it |
 //! |---|---|
@@ -11,7 +12,8 @@
 //! | [`stream`] | `AsperityStream`: the audio buses; its playback is the renderer |
 //! | [`haptic_stream`] | `AsperityHapticStream`: two haptic channels |
 //!
-//! The audio server calls the playbacks on a thread of its own. A playback owns what it renders with, and no other code of this crate binds it.
+//! The audio server calls the playbacks on a thread of its own. A playback owns what it renders
+//! with, and no other code of this crate binds it.
 
 // Godot's entry point and the audio server's buffers.
 #![allow(unsafe_code)]

@@ -12,8 +12,9 @@ use godot::classes::image::Format;
 use godot::classes::{Image, ImageTexture, Texture2D};
 use godot::prelude::*;
 
-/// The heightmap of a normal map, white is high (or low, of one that is drawn the other way round), and the height of white above black in
-/// texels. Takes some tenths of a second for a million texels.
+/// The heightmap of a normal map, white is high (or low, of one that is drawn the other way round),
+/// and the height of white above black in texels. Takes some tenths of a second for a million
+/// texels.
 pub(crate) fn heightmap(texture: &Gd<Texture2D>, upright: bool) -> Result<(Gd<ImageTexture>, f64), String> {
     let [red, green, blue] = normals(texture)?;
     let found = heights_from_normals(&red, &green, &blue, &NormalMapOptions::default());
@@ -29,7 +30,8 @@ pub(crate) fn heightmap(texture: &Gd<Texture2D>, upright: bool) -> Result<(Gd<Im
     Ok((drawn.ok_or("Godot makes no texture of its heights")?, relief_px))
 }
 
-/// The three channels of a normal map, 0 to 1. Importers often keep two of them: the third is then the same everywhere.
+/// The three channels of a normal map, 0 to 1. Importers often keep two of them: the third is then
+/// the same everywhere.
 fn normals(texture: &Gd<Texture2D>) -> Result<[Raster; 3], String> {
     let (picture, is_grey) = picture::of(texture, "it")?;
     if is_grey {

@@ -36,8 +36,9 @@ impl AsperityWorld {
         .is_some()
     }
 
-    /// Renders a recorded log of a world with a scene file once more, faster than real time. "rate_hz", "audio"
-    /// and "haptic", arrays of a PackedFloat32Array each; empty, and an error, where it cannot.
+    /// Renders a recorded log of a world with a scene file once more, faster than real time.
+    /// "rate_hz", "audio" and "haptic", arrays of a PackedFloat32Array each; empty, and an error,
+    /// where it cannot.
     #[func]
     fn render_log(&mut self, path: GString) -> VarDictionary {
         let mut told = VarDictionary::new();

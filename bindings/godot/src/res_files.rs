@@ -1,4 +1,5 @@
-//! Files: what scenes name, from `res://`, `user://` or the disk, through Godot, so that exported projects find them in their pack.
+//! Files: what scenes name, from `res://`, `user://` or the disk, through Godot, so that exported
+//! projects find them in their pack.
 
 use crate::picture;
 use asperity::files::{Files, Memory};

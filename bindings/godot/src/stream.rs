@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex};
 /// Where a renderer waits that nobody plays. The audio thread never looks here.
 pub(crate) type Slot = Arc<Mutex<Option<Renderer>>>;
 
-/// The audio buses of an `AsperityWorld`: one bus sounds on both sides; of several the first is left, the second right, further ones both.
-/// `AsperityWorld.audio_stream()` gives it.
+/// The audio buses of an `AsperityWorld`: one bus sounds on both sides; of several the first is
+/// left, the second right, further ones both. `AsperityWorld.audio_stream()` gives it.
 #[derive(GodotClass)]
 #[class(init, base = AudioStream)]
 pub struct AsperityStream {

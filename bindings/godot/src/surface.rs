@@ -8,8 +8,8 @@ use godot::classes::{BaseMaterial3D, Texture2D};
 use godot::prelude::*;
 use toml::{Table, Value};
 
-/// What a finger feels of a surface, from the maps the renderer draws. Numbers below 0 are not told: then `table`, the body's material or
-/// the engine's default says them.
+/// What a finger feels of a surface, from the maps the renderer draws. Numbers below 0 are not
+/// told: then `table`, the body's material or the engine's default says them.
 #[derive(GodotClass)]
 #[class(init, base = Resource)]
 pub struct AsperitySurface {
@@ -21,7 +21,8 @@ pub struct AsperitySurface {
     #[export]
     #[init(val = 1.0)]
     height_m: f64,
-    /// How often the maps repeat within uv 0 to 1, as a material's `uv1_scale`: a finger's uv times this is where it is on them.
+    /// How often the maps repeat within uv 0 to 1, as a material's `uv1_scale`: a finger's uv times
+    /// this is where it is on them.
     #[export]
     #[init(val = Vector2::ONE)]
     uv_scale: Vector2,
@@ -50,7 +51,8 @@ pub struct AsperitySurface {
     #[export]
     #[init(val = -1.0)]
     friction: f64,
-    /// Further keys of a scene file's [[surface]], TOML: `solid = "granite"`, `wrap = "clamp"`. The fields above count more.
+    /// Further keys of a scene file's [[surface]], TOML: `solid = "granite"`, `wrap = "clamp"`. The
+    /// fields above count more.
     #[export(multiline)]
     table: GString,
     base: Base<Resource>,
@@ -60,15 +62,18 @@ pub struct AsperitySurface {
 const HEIGHTS: &str = "displacement";
 const ROUGHNESS: &str = "roughness_map";
 
-/// A parallax offset of 1 at Godot's `heightmap_scale` 100: its shader multiplies the scale by 0.01 and takes the result for uv.
+/// A parallax offset of 1 at Godot's `heightmap_scale` 100: its shader multiplies the scale by 0.01
+/// and takes the result for uv.
 const UV_PER_HEIGHTMAP_SCALE: f64 = 0.01;
 
 #[godot_api]
 impl AsperitySurface {
-    /// The surface that a material draws: its heightmap, its roughness and its roughness texture. `width_m` and `height_m` are what uv 0 to 1
-    /// spans. The relief follows from `heightmap_scale`, as the shader shows it; set `relief_m` if it was exaggerated. Without a heightmap
-    /// it has the heights whose normals the material draws, which takes some tenths of a second for a million texels; normals that are
-    /// none of a surface's are not felt, and a warning says why. Null, and an error, where there is no material.
+    /// The surface that a material draws: its heightmap, its roughness and its roughness texture.
+    /// `width_m` and `height_m` are what uv 0 to 1 spans. The relief follows from
+    /// `heightmap_scale`, as the shader shows it; set `relief_m` if it was exaggerated. Without a
+    /// heightmap it has the heights whose normals the material draws, which takes some tenths of a
+    /// second for a million texels; normals that are none of a surface's are not felt, and a
+    /// warning says why. Null, and an error, where there is no material.
     #[func]
     fn from_material(material: Option<Gd<BaseMaterial3D>>, width_m: f64, height_m: f64) -> Option<Gd<Self>> {
         let Some(material) = material else {

@@ -37,7 +37,8 @@ impl Triangles {
         Self { all }
     }
 
-    /// The texture coordinates of the place nearest to `point`, and how the mesh runs along u and v there; none where there are none.
+    /// The texture coordinates of the place nearest to `point`, and how the mesh runs along u and v
+    /// there; none where there are none.
     pub(crate) fn uv_at(&self, point: Vector3) -> Option<(Vector2, [Vector3; 2])> {
         let mut best: Option<(f32, Vector2, [Vector3; 2])> = None;
         for (corners, uv) in &self.all {
@@ -64,7 +65,8 @@ fn axes(corners: &[Vector3; 3], uv: &[Vector2; 3]) -> [Vector3; 2] {
 /// How much nearer another side has to be than the one that a finger is on.
 const HOLD: f32 = 1.2;
 
-/// The axis that a normal is nearest to: 0, 1, 2 for x, y, z; the one before, until another is clearly nearer.
+/// The axis that a normal is nearest to: 0, 1, 2 for x, y, z; the one before, until another is
+/// clearly nearer.
 pub(crate) fn side(normal: Vector3, before: Option<usize>) -> usize {
     let along = |axis: usize| {
         let own = [normal.x, normal.y, normal.z][axis].abs();
@@ -82,7 +84,8 @@ pub(crate) fn on_side(v: Vector3, side: usize) -> Vector2 {
     }
 }
 
-/// Barycentric coordinates of a triangle's nearest place: by the regions of its plane (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Barycentric coordinates of a triangle's nearest place: by the regions of its plane (Ericson,
+/// Real-Time Collision Detection, 5.1.5).
 fn nearest([a, b, c]: &[Vector3; 3], p: Vector3) -> [f32; 3] {
     let (ab, ac) = (*b - *a, *c - *a);
     let from = |corner: Vector3| (ab.dot(p - corner), ac.dot(p - corner));

@@ -22,7 +22,8 @@ const GROUP: &str = "asperity_world";
 /// The group by which a world that is built finds the bodies that are in the tree already.
 pub(crate) const BODIES: &str = "asperity_bodies";
 
-/// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame, 133 ms at 60 Hz.
+/// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame,
+/// 133 ms at 60 Hz.
 const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
 
 /// Gravity beyond which a project's unit is taken for the centimetre, m/s².
@@ -41,8 +42,9 @@ pub(crate) struct Running {
     sand: Vec<SandThread>,
 }
 
-/// The engine: one in a tree, before what touches. It opens when it enters the tree, sounds on `audio_bus`, and lets `haptic_bus` vibrate.
-/// What it refuses, it says as Godot's errors and in `last_error()`.
+/// The engine: one in a tree, before what touches. It opens when it enters the tree, sounds on
+/// `audio_bus`, and lets `haptic_bus` vibrate. What it refuses, it says as Godot's errors and in
+/// `last_error()`.
 #[derive(GodotClass)]
 #[class(init, base = Node)]
 pub struct AsperityWorld {
@@ -53,16 +55,19 @@ pub struct AsperityWorld {
     #[export]
     #[init(val = 2)]
     haptic_channels: i64,
-    /// What full scale of a haptic channel stands for, m, where no scene file says it; strokes move a fingertip by hundredths of a millimetre to
-    /// tenths, blows by millimetres, and a limiter keeps them within full scale.
+    /// What full scale of a haptic channel stands for, m, where no scene file says it; strokes move
+    /// a fingertip by hundredths of a millimetre to tenths, blows by millimetres, and a limiter
+    /// keeps them within full scale.
     #[export]
     #[init(val = 5e-4)]
     haptic_full_scale_m: f64,
-    /// Loudness before the limiter, linear, where no scene file says it: blows reach many times full scale.
+    /// Loudness before the limiter, linear, where no scene file says it: blows reach many times
+    /// full scale.
     #[export]
     #[init(val = 0.2)]
     gain: f64,
-    /// Godot's audio bus on which it sounds; empty: a player of the project's own plays `audio_stream()`.
+    /// Godot's audio bus on which it sounds; empty: a player of the project's own plays
+    /// `audio_stream()`.
     #[export]
     #[init(val = "Master".into())]
     audio_bus: StringName,
@@ -111,8 +116,9 @@ impl INode for AsperityWorld {
 
 #[godot_api]
 impl AsperityWorld {
-    /// Opens the engine anew, at the audio server's rate. Bodies in the tree join it and the world's own buses play it; ids and streams of
-    /// before are no longer known, and silent. False, and an error, where it cannot.
+    /// Opens the engine anew, at the audio server's rate. Bodies in the tree join it and the
+    /// world's own buses play it; ids and streams of before are no longer known, and silent. False,
+    /// and an error, where it cannot.
     #[func]
     fn build(&mut self) -> bool {
         self.running = None;
@@ -144,13 +150,15 @@ impl AsperityWorld {
         true
     }
 
-    /// The stream of its audio buses, for a player of one's own. It can be played in one place. Null: the world is not built.
+    /// The stream of its audio buses, for a player of one's own. It can be played in one place.
+    /// Null: the world is not built.
     #[func]
     fn audio_stream(&self) -> Option<Gd<AsperityStream>> {
         self.stream.clone()
     }
 
-    /// By how many frames what is played comes after the engine's own time line: what `render_log` renders begins so many frames earlier.
+    /// By how many frames what is played comes after the engine's own time line: what `render_log`
+    /// renders begins so many frames earlier.
     #[func]
     fn latency_frames(&self) -> i64 {
         self.latency_frames as i64
@@ -194,7 +202,8 @@ impl AsperityWorld {
         .is_some()
     }
 
-    /// The id of a surface by its name in the scene file, or that of its `AsperityBody`; 0: there is none.
+    /// The id of a surface by its name in the scene file, or that of its `AsperityBody`; 0: there
+    /// is none.
     #[func]
     fn find_surface(&self, name: GString) -> i64 {
         let running = self.running.as_ref();
@@ -208,10 +217,12 @@ impl AsperityWorld {
         running.and_then(|r| r.names.bodies.get(&name.to_string())).map_or(0, |id| id.to_bits() as i64)
     }
 
-    /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic channel feels it (-1: none). Report once a
-    /// physics tick; the time is the tick's. What rolls tells with every report how fast it slips where it touches, m/s (0: it only rolls), and
-    /// its radius, m; left out, it is a stroke. How fast it moves along u and v, m/s, tells whoever knows it: contact points of a physics engine
-    /// hop, and without it each hop is a motion. False, and an error, where it is refused.
+    /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic
+    /// channel feels it (-1: none). Report once a physics tick; the time is the tick's. What rolls
+    /// tells with every report how fast it slips where it touches, m/s (0: it only rolls), and its
+    /// radius, m; left out, it is a stroke. How fast it moves along u and v, m/s, tells whoever
+    /// knows it: contact points of a physics engine hop, and without it each hop is a motion.
+    /// False, and an error, where it is refused.
     #[func]
     #[allow(
         clippy::too_many_arguments,
@@ -254,7 +265,8 @@ impl AsperityWorld {
         })
     }
 
-    /// A contact has moved at a velocity that is known, m/s along u and v; what rolls tells it as in `report_begin`.
+    /// A contact has moved at a velocity that is known, m/s along u and v; what rolls tells it as
+    /// in `report_begin`.
     #[func]
     fn report_move_at(
         &mut self,
@@ -278,8 +290,9 @@ impl AsperityWorld {
         self.report("report_end", || Ok(ContactEvent::end(events::contact(contact)?)))
     }
 
-    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the haptic channel that feels it (-1: none), and where
-    /// in its own space, m, for a body whose modes have shapes.
+    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the
+    /// haptic channel that feels it (-1: none), and where in its own space, m, for a body whose
+    /// modes have shapes.
     #[func]
     #[allow(
         clippy::too_many_arguments,
@@ -301,8 +314,9 @@ impl AsperityWorld {
         })
     }
 
-    /// What has happened so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how much limiters have turned down at most;
-    /// `why_silent` says what speaks against anything being heard.
+    /// What has happened so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how
+    /// much limiters have turned down at most; `why_silent` says what speaks against anything being
+    /// heard.
     #[func]
     fn stats(&self) -> VarDictionary {
         let mut told = VarDictionary::new();

@@ -1,4 +1,5 @@
-//! Data sets of rendered touch: shards as pure functions of a specification and an index, made in the process that asks.
+//! Data sets of rendered touch: shards as pure functions of a specification and an index, made in
+//! the process that asks.
 
 use crate::error::{refused, refused_at};
 use crate::interrupt::Pulse;
@@ -51,7 +52,8 @@ impl NativeDataSet {
         &self.name
     }
 
-    /// Makes a shard unless it is there: its file, whether it was made, its strokes, and the samples that 16 bits have cut off.
+    /// Makes a shard unless it is there: its file, whether it was made, its strokes, and the
+    /// samples that 16 bits have cut off.
     #[pyo3(signature = (index, *, progress=None))]
     fn shard(
         &self,
@@ -90,7 +92,8 @@ impl NativeDataSet {
     }
 }
 
-/// Compares every shard with the manifest and renders a share of the strokes again: shards, strokes rendered, shards missing.
+/// Compares every shard with the manifest and renders a share of the strokes again: shards, strokes
+/// rendered, shards missing.
 #[pyfunction]
 #[pyo3(signature = (folder, sample, *, progress=None))]
 pub fn verify(
@@ -117,7 +120,7 @@ pub fn verify(
     found.map(|found| (found.shards, found.rendered, found.missing)).map_err(at)
 }
 
-/// What differs between this build and the one that a shard says it was made by is refused by `shard`; this names ours.
+/// Names this build; a shard that says it was made by another is refused by `shard`.
 #[pyfunction]
 pub fn build<'py>(py: Python<'py>, text: String, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let build = asperity_batch::Build::of(&Spec::parse(text, &path).map_err(refused)?);

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
 
-/// How often Python is asked whether to go on, and told how far the work is.
+/// Interval at which Python is asked whether to go on, and told how far the work is.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// Asks Python now and then whether to go on.
@@ -14,7 +14,7 @@ pub struct Pulse {
     error: Option<PyErr>,
 }
 
-/// What unwinds out of work whose progress is only told, never answered.
+/// Panic that unwinds out of work whose progress is only told, never answered.
 struct Interrupted;
 
 impl Pulse {
@@ -23,7 +23,7 @@ impl Pulse {
         Self { progress, last: Instant::now(), error: None }
     }
 
-    /// Whether to go on; tells the part done.
+    /// Tests whether to go on; tells the part done.
     pub fn beat(&mut self, done: f64) -> bool {
         if self.error.is_none() && self.last.elapsed() >= EVERY {
             self.last = Instant::now();
@@ -37,12 +37,13 @@ impl Pulse {
         self.progress.as_ref().map_or(Ok(()), |progress| progress.call1(py, (done,)).map(drop))
     }
 
-    /// What Python said when it did not want to go on.
+    /// Error of Python when it did not want to go on.
     pub fn error(&mut self) -> Option<PyErr> {
         self.error.take()
     }
 
-    /// Does work that tells its progress and cannot be told to stop: on Ctrl-C it is left by unwinding.
+    /// Does work that tells its progress and cannot be told to stop: on Ctrl-C it is left by
+    /// unwinding.
     ///
     /// # Errors
     /// What Python said when it did not want to go on.

@@ -1,8 +1,9 @@
 //! The native half of the Python package `asperity`: whole tasks in, arrays out.
 //!
-//! Everything a Python scene is crosses the border as the files the program itself reads (a scene's text, logs, modes files), with arrays
-//! as decoded pictures beside them, so that both say the same and render the same bits. The Python half (`python/asperity`) gives it the
-//! shape that people use.
+//! Everything a Python scene is crosses the border as the files the program itself reads (a scene's
+//! text, logs, modes files), with arrays as decoded pictures beside them, so that both say the same
+//! and render the same bits. The Python half (`python/asperity`) gives it the shape that people
+//! use.
 
 #![allow(unsafe_code, reason = "pyo3's macros")]
 #![warn(missing_docs)]

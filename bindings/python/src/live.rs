@@ -17,8 +17,8 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
-/// Longest block that is rendered while the GIL is held, frames: letting it go and taking it again may cost 5 ms, a block of this length
-/// costs less.
+/// Longest block that is rendered while the GIL is held, frames: letting it go and taking it again
+/// may cost 5 ms, a block of this length costs less.
 const SHORT_FRAMES: usize = 1024;
 
 /// The game's half.
@@ -120,12 +120,12 @@ impl LiveScene {
         Ok(())
     }
 
-    /// What the engine did so far, as JSON.
+    /// Statistics of the engine so far, as JSON.
     fn stats(&self) -> PyResult<String> {
         serde_json::to_string(&held(&self.inner)?.scene.stats()).map_err(refused)
     }
 
-    /// What speaks against anything being heard or felt.
+    /// Reasons against anything being heard or felt.
     fn why_silent(&self) -> PyResult<Vec<String>> {
         Ok(held(&self.inner)?.scene.why_silent().iter().map(ToString::to_string).collect())
     }
@@ -192,7 +192,7 @@ impl LiveRenderer {
         Ok(())
     }
 
-    /// What goes where: "audio=0,1 haptic=2,3".
+    /// Channels of the device: "audio=0,1 haptic=2,3".
     fn set_channels(&self, text: &str) -> PyResult<usize> {
         let map = ChannelMap::parse(text).map_err(refused)?;
         let width = map.width();

@@ -113,7 +113,8 @@ fn told<'py>(
     Ok(told)
 }
 
-/// How often strokes on each map are put on the right one, and the same of metamers of all maps to the first.
+/// Share of strokes on each map that are put on the right one, and of metamers of all maps that are
+/// put on the first.
 #[pyfunction]
 #[pyo3(signature = (maps, *, strokes, width_m, relief_m, seed, iterations=None, progress=None))]
 #[allow(clippy::too_many_arguments, reason = "they are the options of a verb")]

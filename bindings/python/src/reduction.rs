@@ -9,7 +9,8 @@ use std::collections::HashMap;
 
 /// Most envelope points a second where nothing else is said, as the program has it.
 const POINTS_PER_S: f64 = 250.0;
-/// Keyframes a second of an `.hjif`, and the accuracy beyond which nobody needs more, dB; as the program has them.
+/// Keyframes a second of an `.hjif`, and the accuracy beyond which nobody needs more, dB; as the
+/// program has them.
 const HJIF: [f64; 2] = [4000.0, 40.0];
 
 /// A vibration as two envelopes, and the device that they were made for.
@@ -106,7 +107,8 @@ impl NativeClip {
         (self.device.label.clone(), self.device.band_hz)
     }
 
-    /// The texts of a format ("haptic", "ahap", "android", "hjif"): what is added to the file's stem, and the text.
+    /// The texts of a format ("haptic", "ahap", "android", "hjif"): what is added to the file's
+    /// stem, and the text.
     fn texts(&self, py: Python<'_>, format: &str) -> PyResult<Vec<(&'static str, String)>> {
         py.detach(|| match format {
             "haptic" => Ok(vec![(".haptic", haptic_file::write(&self.clip).map_err(refused)?)]),

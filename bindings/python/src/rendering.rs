@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// Most samples of all channels together: 2 GiB of memory, as the program allows.
 const MAX_SAMPLES: f64 = (1u64 << 29) as f64;
 
-/// What is rendered, and how.
+/// Render and its settings.
 struct Wanted<'a> {
     sources: &'a Sources,
     scene: PathBuf,
@@ -33,7 +33,7 @@ struct Wanted<'a> {
     force_rate_hz: Option<f64>,
 }
 
-/// What came of it.
+/// Result.
 struct Made {
     render: Render,
     kernel: &'static str,

@@ -53,7 +53,7 @@ impl Watch {
         Self { pulse, trace: trace.then(Rows::new), force: force_rate_hz.map(force) }
     }
 
-    /// What Python said when it did not want to go on.
+    /// Error of Python when it did not want to go on.
     pub fn error(&mut self) -> Option<PyErr> {
         self.pulse.error()
     }

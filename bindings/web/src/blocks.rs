@@ -1,4 +1,5 @@
-//! Blocks: what the audio thread calls. Nothing here fails or makes a sentence; where no scene is open it is silent.
+//! Blocks: what the audio thread calls. Nothing here fails or makes a sentence; where no scene is
+//! open it is silent.
 
 use crate::session::{self, Session};
 use asperity::{ContactBlock, Tap};
@@ -11,8 +12,9 @@ pub const MOST_CHANNELS: usize = 16;
 /// Numbers that a block shows of its contacts.
 pub const SCOPE_NUMBERS: usize = 16;
 
-/// What the first contact of a block does, as numbers in this order: how many contacts touch; lowest and highest ground under the finger, m; lowest
-/// and highest skin, m; place along u and v, m; velocity along u and v, m/s; force that presses, N; momentum sent to the body, N·s; its name.
+/// What the first contact of a block does, as numbers in this order: how many contacts touch;
+/// lowest and highest ground under the finger, m; lowest and highest skin, m; place along u and v,
+/// m; velocity along u and v, m/s; force that presses, N; momentum sent to the body, N·s; its name.
 #[derive(Clone, Copy)]
 struct Scope([f32; SCOPE_NUMBERS]);
 
@@ -114,8 +116,9 @@ fn start(signal: Option<&Vec<f32>>) -> *const f32 {
     signal.filter(|signal| !signal.is_empty()).map_or(std::ptr::null(), |signal| signal.as_ptr())
 }
 
-/// Where the numbers of the last block lie, 16 of them: contacts that touch (0, 1, 2 = several), then of the first one the lowest and highest
-/// ground, m, lowest and highest skin, m, place along u and v, m, velocity along u and v, m/s, force, N, momentum sent, N·s, name.
+/// Where the numbers of the last block lie, 16 of them: contacts that touch (0, 1, 2 = several),
+/// then of the first one the lowest and highest ground, m, lowest and highest skin, m, place along
+/// u and v, m, velocity along u and v, m/s, force, N, momentum sent, N·s, name.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_scope() -> *const f32 {
     CHANNELS.with_borrow(|channels| channels.scope.0.as_ptr())
@@ -129,7 +132,8 @@ pub extern "C" fn asp_position() -> f64 {
     position as f64
 }
 
-/// Tells the engine which share of its time the last block took; above all of it the least audible work is left out.
+/// Tells the engine which share of its time the last block took; above all of it the least audible
+/// work is left out.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_report_load(load: f32) {
     session::if_open(|session| session.renderer.report_load(load));

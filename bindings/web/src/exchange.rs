@@ -1,5 +1,5 @@
-//! Exchange: bytes to and from JavaScript. It asks for an inbox of some size, writes there, calls; what a call answers lies in the outbox until
-//! the next one.
+//! Exchange: bytes to and from JavaScript. It asks for an inbox of some size, writes there, calls;
+//! what a call answers lies in the outbox until the next one.
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -19,13 +19,13 @@ pub extern "C" fn asp_inbox(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Where the answer lies.
+/// Place of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_outbox() -> *const u8 {
     OUTBOX.with_borrow(Vec::as_ptr)
 }
 
-/// How many bytes it has.
+/// Number of its bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_outbox_bytes() -> usize {
     OUTBOX.with_borrow(Vec::len)
@@ -38,12 +38,12 @@ pub extern "C" fn asp_forget_boxes() {
     OUTBOX.take();
 }
 
-/// What was handed over.
+/// Bytes that were handed over.
 pub(crate) fn inbox() -> Vec<u8> {
     INBOX.take()
 }
 
-/// What was handed over, as text.
+/// Bytes that were handed over, as text.
 pub(crate) fn inbox_text() -> Result<String, String> {
     String::from_utf8(inbox()).map_err(|_| "the text is not UTF-8; must be".into())
 }

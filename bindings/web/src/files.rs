@@ -31,8 +31,9 @@ pub extern "C" fn asp_file(name_bytes: usize) -> u32 {
     done(named(name_bytes).map(|(name, content)| FILES.with_borrow_mut(|files| files.add(name, content))))
 }
 
-/// Keeps a decoded picture under a name. Inbox: the name, and the samples, row after row from the top: 1, 2 or 4 bytes each (whole
-/// numbers, whole numbers, floating point), little-endian, one to four a pixel.
+/// Keeps a decoded picture under a name. Inbox: the name, and the samples, row after row from the
+/// top: 1, 2 or 4 bytes each (whole numbers, whole numbers, floating point), little-endian, one to
+/// four a pixel.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_picture(name_bytes: usize, width: u32, height: u32, sample_bytes: u32) -> u32 {
     let add = || {

@@ -1,4 +1,5 @@
-//! asperity as WebAssembly: one engine an instance, called by plain exports, without a generator of bindings.
+//! asperity as WebAssembly: one engine an instance, called by plain exports, without a generator of
+//! bindings.
 //!
 //! | file | what JavaScript does with it |
 //! |---|---|
@@ -10,11 +11,13 @@
 //! | [`record`] | takes the contact log of what was reported |
 //! | [`ports`] | two levels for motors that rumble, the picture of a surface that changes |
 //!
-//! Everything lies in the instance's linear memory, and nothing of it in a global or a table: a copy of the memory is a copy of the engine. So
-//! a worker prepares an engine and the audio thread, which may not wait, takes it over by copying bytes.
+//! Everything lies in the instance's linear memory, and nothing of it in a global or a table: a
+//! copy of the memory is a copy of the engine. So a worker prepares an engine and the audio thread,
+//! which may not wait, takes it over by copying bytes.
 //!
-//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a sentence that says what is wrong and
-//! what would be right. Exported functions are safe whatever they are given.
+//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a
+//! sentence that says what is wrong and what would be right. Exported functions are safe whatever
+//! they are given.
 
 // What is exported keeps its name.
 #![allow(unsafe_code)]

@@ -20,7 +20,8 @@ pub extern "C" fn asp_open_levels(channel: u32, rate_hz: f64) -> u32 {
     }))
 }
 
-/// The newest level of the heavy motor (0) or the light one (1), as the peak of a sine in the unit of the samples; 0 where no port is open.
+/// The newest level of the heavy motor (0) or the light one (1), as the peak of a sine in the unit
+/// of the samples; 0 where no port is open.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_level(motor: u32) -> f64 {
     let mut level = 0.0;
@@ -32,7 +33,8 @@ pub extern "C" fn asp_level(motor: u32) -> f64 {
     level
 }
 
-/// Opens the picture of surface `index`, in the place of the one before; refused where it never changes.
+/// Opens the picture of surface `index`, in the place of the one before; refused where it never
+/// changes.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_open_picture(index: u32) -> u32 {
     done(session::with(|session| {
@@ -46,8 +48,9 @@ pub extern "C" fn asp_open_picture(index: u32) -> u32 {
     }))
 }
 
-/// The tiles that have changed since the last call. Outbox: of each tile its first column and row, its columns and rows, then its heights in metres
-/// above the bottom, all as 32-bit floating point. Tells how many tiles there are.
+/// The tiles that have changed since the last call. Outbox: of each tile its first column and row,
+/// its columns and rows, then its heights in metres above the bottom, all as 32-bit floating point.
+/// Tells how many tiles there are.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_read_picture() -> usize {
     let mut count = 0;

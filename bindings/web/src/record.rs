@@ -1,4 +1,5 @@
-//! Record: what was reported, as a contact log, each event at the time at which the engine applies it.
+//! Record: what was reported, as a contact log, each event at the time at which the engine applies
+//! it.
 
 use crate::exchange::{answer, done};
 use crate::session;

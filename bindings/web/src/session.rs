@@ -120,8 +120,9 @@ fn told(file: &SceneFile, engine: &Engine) -> serde_json::Value {
     told
 }
 
-/// Opens a scene in the place of the one before. Inbox: the text of a scene file. `rate_hz` 0: the file's own. `live` 1: times of reports follow
-/// the audio (a page that runs now); 0: they are exact (a replay). Outbox: what there is, as JSON.
+/// Opens a scene in the place of the one before. Inbox: the text of a scene file. `rate_hz` 0: the
+/// file's own. `live` 1: times of reports follow the audio (a page that runs now); 0: they are
+/// exact (a replay). Outbox: what there is, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_open(rate_hz: f64, live: u32) -> u32 {
     SESSION.take();
@@ -136,8 +137,9 @@ pub extern "C" fn asp_close() {
     SESSION.take();
 }
 
-/// Makes of the scene that runs the one that the inbox says, without a step where that can be. Outbox: what has changed, what waits, what there is,
-/// as JSON. It makes what is new, so on an audio thread it costs a gap unless that is small.
+/// Makes of the scene that runs the one that the inbox says, without a step where that can be.
+/// Outbox: what has changed, what waits, what there is, as JSON. It makes what is new, so on an
+/// audio thread it costs a gap unless that is small.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_apply() -> u32 {
     let applied =
@@ -194,8 +196,9 @@ pub extern "C" fn asp_stats() -> u32 {
     }))
 }
 
-/// Heights of surface `index` on a grid whose longer side has `longest` points. Outbox: columns and rows as 32-bit whole numbers, then heights in
-/// metres as 32-bit floating point, little-endian; refused where heights do not belong to places.
+/// Heights of surface `index` on a grid whose longer side has `longest` points. Outbox: columns and
+/// rows as 32-bit whole numbers, then heights in metres as 32-bit floating point, little-endian;
+/// refused where heights do not belong to places.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_relief(index: u32, longest: u32) -> u32 {
     done(with(|session| {

@@ -1,6 +1,7 @@
 //! Bodies that answer back: a bar and a plate struck at places, held and let go, bowed.
 //!
-//! Their modes are closed forms with shapes on a sheet: Euler–Bernoulli's free bar, and Kirchhoff's plate with edges that rest on supports.
+//! Their modes are closed forms with shapes on a sheet: Euler–Bernoulli's free bar, and Kirchhoff's
+//! plate with edges that rest on supports.
 
 use super::demo_scene::DemoScene;
 use super::strokes::{Finger, log};
@@ -19,7 +20,8 @@ const STEEL_KG_M3: f64 = 7850.0;
 const BAR_MODES: usize = 8;
 /// Half waves along and across the plate, at most.
 const PLATE_ORDERS: [usize; 2] = [6, 4];
-/// Place of the bar's second line of nodes over its length: a strike there leaves the lowest mode out.
+/// Place of the bar's second line of nodes over its length: a strike there leaves the lowest mode
+/// out.
 const NODE: f64 = 0.2242;
 
 /// The scene.
@@ -154,7 +156,8 @@ fn plate() -> ModalModel {
 fn toml() -> String {
     let mut text = "# Bodies with shapes: struck anywhere, held, and bowed.\ncontacts = \"answering.jsonl\"\ntail_s = 1.5\n\n".to_owned();
     let hole = PLATE_M.map(|side| side / 3.0);
-    // A bow stands across the bar's end, and runs through a hole of the plate: u is its hair, out of the sheet.
+    // A bow stands across the bar's end, and runs through a hole of the plate: u is its hair, out
+    // of the sheet.
     for (body, size_m, bow_m) in [("bar", BAR_M, [0.0; 2]), ("plate", PLATE_M, [hole[0], hole[1]])] {
         let [width_m, height_m, _] = size_m;
         let [x, y] = bow_m;
@@ -210,7 +213,8 @@ fn lines() -> Vec<LogLine> {
             start_s: t,
             normal_force_n: if number == 0 { 2.5 } else { 4.0 },
             from_m: [0.05, 0.015],
-            // Slow enough: faster than this friction no longer falls steeply enough to feed the lowest mode.
+            // Slow enough: faster than this friction no longer falls steeply enough to feed the
+            // lowest mode.
             strokes: vec![([0.3, 0.015], 0.12), ([0.05, 0.015], 0.09)],
         };
         lines.extend(bow.lines());

@@ -1,4 +1,5 @@
-//! A body from its shape: a bowl turned from a profile, written as a mesh, solved by `asperity modes` and struck.
+//! A body from its shape: a bowl turned from a profile, written as a mesh, solved by `asperity
+//! modes` and struck.
 
 use super::demo_scene::DemoScene;
 use super::strokes::log;

@@ -7,8 +7,9 @@ use asperity::files::contact_log::LogLine;
 
 /// Side of the gallery's surfaces, m.
 const SIDE_M: f64 = 0.12;
-/// The presets of the solid-noise paper, in the order they are stroked, and how rough each is where its noise ends (R, assumed): without a finish
-/// granite, rough glass and pebbles are smooth below their own waves, and a finger is heard on them only as it lands.
+/// The presets of the solid-noise paper, in the order they are stroked, and how rough each is where
+/// its noise ends (R, assumed): without a finish granite, rough glass and pebbles are smooth below
+/// their own waves, and a finger is heard on them only as it lands.
 const MATERIALS: [(&str, f64); 7] = [
     ("sandpaper", 0.6),
     ("granite", 0.4),

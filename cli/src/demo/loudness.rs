@@ -8,7 +8,8 @@ use crate::sounds::integrated_lufs;
 use asperity::files::scene_file::SceneFile;
 use std::path::Path;
 
-/// Integrated loudness of every scene, LUFS. Source: EBU R 128; every scene peaks below full scale with it.
+/// Integrated loudness of every scene, LUFS. Source: EBU R 128; every scene peaks below full scale
+/// with it.
 const LUFS: f64 = -23.0;
 
 /// Writes the gain into a scene file with which it has that loudness.

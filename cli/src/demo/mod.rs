@@ -1,8 +1,9 @@
 //! `asperity demo`: the main job in one command, with nothing to download and nothing to install.
 //!
-//! Writes the shipped scenes into a folder, fits the shipped recording, solves the shipped mesh, gives every scene the gain that makes it
-//! as loud as the others ([`loudness`]), renders it through the very path of `asperity render --plot`, and writes an index that says
-//! what each file is.
+//! Writes the shipped scenes into a folder, fits the shipped recording, solves the shipped mesh,
+//! gives every scene the gain that makes it as loud as the others ([`loudness`]), renders it
+//! through the very path of `asperity render --plot`, and writes an index that says what each file
+//! is.
 
 mod answering;
 mod bowl;

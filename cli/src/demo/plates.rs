@@ -1,7 +1,8 @@
 //! The six plates of the Hasti study (§V, Fig. 9), drawn from formulas.
 //!
-//! The paper gives the diameter (140 mm), the names and the scale of its height maps (4 mm); wavelengths
-//! and profiles are ours. Two plates are flat and differ only in the roughness map; four have relief.
+//! The paper gives the diameter (140 mm), the names and the scale of its height maps (4 mm);
+//! wavelengths and profiles are ours. Two plates are flat and differ only in the roughness map;
+//! four have relief.
 
 use std::f64::consts::PI;
 

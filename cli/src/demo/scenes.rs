@@ -81,9 +81,10 @@ const PLATE_GAIN: f64 = 5.0;
 
 /// Modes of a free round plastic plate: its first bending modes, ω ∝ λ², heavily damped.
 ///
-/// λ² of a free circular plate with Poisson ratio 0.33: 5.25 (2,0), 9.08 (0,1), 12.2 (3,0), 20.5 (1,1),
-/// 21.5 (4,0), 33.1 (5,0), 35.3 (2,1), 38.6 (0,2), 53.0 (3,1) (Leissa 1969, rounded). A printed disc of
-/// 140 mm × 5 mm puts the first near 430 Hz. Amplitudes and damping are chosen, not measured.
+/// λ² of a free circular plate with Poisson ratio 0.33: 5.25 (2,0), 9.08 (0,1), 12.2 (3,0), 20.5
+/// (1,1), 21.5 (4,0), 33.1 (5,0), 35.3 (2,1), 38.6 (0,2), 53.0 (3,1) (Leissa 1969, rounded). A
+/// printed disc of 140 mm × 5 mm puts the first near 430 Hz. Amplitudes and damping are chosen, not
+/// measured.
 #[must_use]
 pub fn plate_modes() -> ModalModel {
     const LAMBDA2: [f64; 9] = [5.25, 9.08, 12.2, 20.5, 21.5, 33.1, 35.3, 38.6, 53.0];

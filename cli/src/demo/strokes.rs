@@ -1,9 +1,9 @@
 //! Demo strokes: contact logs as a tracker and a physics step would report them, at 60 Hz.
 //!
-//! A stroke leaves and stops with a smooth speed (no step in acceleration), runs at one speed between,
-//! bows a little as it turns about the elbow, trembles by some hundredths of a millimetre at 9 Hz, and
-//! presses with a force that wanders by a few percent. Speeds and forces are those of people exploring
-//! textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
+//! A stroke leaves and stops with a smooth speed (no step in acceleration), runs at one speed
+//! between, bows a little as it turns about the elbow, trembles by some hundredths of a millimetre
+//! at 9 Hz, and presses with a force that wanders by a few percent. Speeds and forces are those of
+//! people exploring textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use std::f64::consts::PI;
@@ -84,7 +84,8 @@ impl Finger<'_> {
     }
 }
 
-/// A landing finger presses with a fifth of its force at first and with all of it after a tenth of a second.
+/// A landing finger presses with a fifth of its force at first and with all of it after a tenth of
+/// a second.
 fn pressing(since_s: f64) -> f64 {
     let tau = (since_s / 0.1).clamp(0.0, 1.0);
     0.2 + 0.8 * tau * tau * (3.0 - 2.0 * tau)

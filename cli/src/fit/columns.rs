@@ -1,4 +1,5 @@
-//! Columns of a modal table as other programs write them: separators, quotes, units in brackets, damping in their terms.
+//! Columns of a modal table as other programs write them: separators, quotes, units in brackets,
+//! damping in their terms.
 //!
 //! | column | becomes |
 //! |---|---|
@@ -7,8 +8,8 @@
 //! | `q`, `q_factor`, `quality_factor` | decay π f / Q |
 //! | `loss_factor`, `eta`, `η` | decay π f η |
 //!
-//! Units stand in brackets behind the name or at its end (`[kHz]`, `(%)`, `_khz`, `_percent`). A column `damping` is read only with
-//! a unit: it may be a ratio or per cent.
+//! Units stand in brackets behind the name or at its end (`[kHz]`, `(%)`, `_khz`, `_percent`). A
+//! column `damping` is read only with a unit: it may be a ratio or per cent.
 
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
@@ -36,7 +37,8 @@ pub fn of_csv(text: &str) -> Vec<Column> {
     columns
 }
 
-/// Columns of a list of objects with a number for each name, or of the first list of such in an object.
+/// Columns of a list of objects with a number for each name, or of the first list of such in an
+/// object.
 pub fn of_rows(json: &Value) -> Option<Vec<Column>> {
     let is_rows = |value: &&Value| {
         value.as_array().is_some_and(|list| {
@@ -69,7 +71,8 @@ fn cells(line: &str, separator: char) -> Vec<String> {
     cells
 }
 
-/// Names without units, in lower case, and frequencies and decays in the terms of a modes file beside what was there.
+/// Names without units, in lower case, and frequencies and decays in the terms of a modes file
+/// beside what was there.
 pub fn understood(columns: Vec<Column>) -> Vec<Column> {
     let named: Vec<(String, String, Vec<f64>)> = columns
         .into_iter()

@@ -1,7 +1,8 @@
 //! Modal tables of other programs become modes files.
 //!
-//! CSV with the columns of [`asperity_fit::after::table`] or of `columns`, a modes file, or JSON: one object of equally long number
-//! lists, a list of such objects with a `name` each, or rows: objects with a number for each column. Beside these are known:
+//! CSV with the columns of [`asperity_fit::after::table`] or of `columns`, a modes file, or JSON:
+//! one object of equally long number lists, a list of such objects with a `name` each, or rows:
+//! objects with a number for each column. Beside these are known:
 //!
 //! | key | meaning |
 //! |---|---|
@@ -10,7 +11,8 @@
 //! | `pole_radius` | decay per sample at `--table-rate` |
 //! | `gains` | one list a strike position |
 //!
-//! Rows that are no mode (a frequency of 0 stands for "none" in some tables) are left out with a warning.
+//! Rows that are no mode (a frequency of 0 stands for "none" in some tables) are left out with a
+//! warning.
 
 use super::columns;
 use crate::error::CliError;
@@ -91,7 +93,8 @@ pub fn read(path: &Path, missing: &Missing) -> Result<Imported, CliError> {
     body(entry, missing).map_err(in_file)
 }
 
-/// Modes of columns as they were read; of amplitude 1 where none is given, as tables of modal analysis have them.
+/// Modes of columns as they were read; of amplitude 1 where none is given, as tables of modal
+/// analysis have them.
 fn of_columns(columns: Vec<columns::Column>) -> Result<Imported, CliError> {
     let mut columns = columns::understood(columns);
     let mut warnings = without_placeholders(&mut columns, &mut []);

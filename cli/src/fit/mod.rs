@@ -39,14 +39,15 @@ const STEPS: u64 = 200;
 /// Turn one recorded impact into modes
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Recording of a strike: WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a modes file
+    /// Recording of a strike: WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A, 1 kHz – 1 MHz; or a modal
+    /// table (.csv, .json), or a modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
     /// With --family: further takes, hits of the same object
     #[arg(value_name = "TAKE.wav", requires = "family")]
     pub takes: Vec<PathBuf>,
-    /// Make one body of all the recordings: poles in common, and each take's own excitation as one of the body's strike
-    /// positions
+    /// Make one body of all the recordings: poles in common, and each take's own excitation as one
+    /// of the body's strike positions
     #[arg(long, requires = "takes")]
     pub family: bool,
     /// Modes file to write
@@ -82,12 +83,13 @@ pub struct Options {
     /// Give the body the damping of another: its modes file, or ALPHA,BETA of d = α + β ω²
     #[arg(long, value_name = "MODES.json|ALPHA,BETA")]
     pub material: Option<String>,
-    /// More strikes of the same object: they become the body's further strike positions; each is also
-    /// written as OUT.strikeN.modes.json with the common frequencies
+    /// More strikes of the same object: they become the body's further strike positions; each is
+    /// also written as OUT.strikeN.modes.json with the common frequencies
     #[arg(long, value_name = "STRIKE.wav", num_args = 1..)]
     pub merge: Vec<PathBuf>,
-    /// With --merge: the struck body with its mode shapes (a modes file of version 2); tells at which place each strike was made and how
-    /// much of their difference that explains. Nothing else changes
+    /// With --merge: the struck body with its mode shapes (a modes file of version 2); tells at
+    /// which place each strike was made and how much of their difference that explains. Nothing
+    /// else changes
     #[arg(long, value_name = "BODY.modes.json", requires = "merge")]
     pub mesh: Option<PathBuf>,
     /// Write what the modes do not explain
@@ -176,7 +178,8 @@ impl Options {
 /// Runs the verb.
 ///
 /// # Errors
-/// When the recording cannot be read or fitted, an option is out of range, or a file cannot be written.
+/// When the recording cannot be read or fitted, an option is out of range, or a file cannot be
+/// written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     if import::is_table(&options.recording) {
         let report = import_table(options)?;
@@ -364,10 +367,8 @@ fn write_strikes(
     burst: Option<Burst>,
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
 ) -> Result<Merged, CliError> {
-    let others = options
-        .others()
-        .map(|path| fitted(path, channel, options))
-        .collect::<Result<Vec<_>, CliError>>()?;
+    let others =
+        options.others().map(|path| fitted(path, channel, options)).collect::<Result<Vec<_>, CliError>>()?;
     let strikes: Vec<(&Recording, &Fit)> =
         std::iter::once((recording, fit)).chain(others.iter().map(|(r, f)| (r, f))).collect();
     let merged = merge(&strikes);

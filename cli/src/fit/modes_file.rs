@@ -1,4 +1,5 @@
-//! `NAME.modes.json` as the fit writes it: what the engine reads, and beside it what a user may ask.
+//! `NAME.modes.json` as the fit writes it: what the engine reads, and beside it what a user may
+//! ask.
 
 use crate::error::CliError;
 use crate::output::Outputs;

@@ -1,5 +1,6 @@
-//! The picture of a fit: recording, what the engine plays, and what is left, each as a wave and as a spectrogram, all on
-//! the recording's scale; above them the first milliseconds, where a strike is right or wrong.
+//! The picture of a fit: recording, what the engine plays, and what is left, each as a wave and as
+//! a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
+//! is right or wrong.
 
 use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
 use asperity_fit::{Fit, Recording};

@@ -1,4 +1,5 @@
-//! `--mesh`: where on a body with mode shapes the merged strikes were made, as a check of one against the other.
+//! `--mesh`: where on a body with mode shapes the merged strikes were made, as a check of one
+//! against the other.
 
 use crate::error::CliError;
 use asperity::{ModalModel, ModeShapes};
@@ -45,7 +46,8 @@ pub struct GainReport {
 }
 
 impl PlacesReport {
-    /// Assigns the strikes, in the order of the recordings, to points of the body in a modes file with shapes.
+    /// Assigns the strikes, in the order of the recordings, to points of the body in a modes file
+    /// with shapes.
     ///
     /// # Errors
     /// When the file is none or has no shapes, or too few of its modes are in the recordings.

@@ -27,7 +27,8 @@ pub struct Options {
     /// Samples of displacement, a scene with its contact log, or a clip
     #[arg(value_name = "IN.(wav|flac|ogg|toml|haptic|ahap|hjif)")]
     pub input: PathBuf,
-    /// Way of writing: an envelope of two curves, a waveform in few points, or samples of what is left
+    /// Way of writing: an envelope of two curves, a waveform in few points, or samples of what is
+    /// left
     #[arg(short, long = "output", value_name = "OUT.(haptic|ahap|hjif|android.json|pcm.wav|wav)")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -49,7 +50,8 @@ pub struct Options {
 /// Settings of a port.
 #[derive(Debug, Args)]
 pub struct PortOptions {
-    /// Device that plays it: quest, console, iphone, lra-170, or a profile (TOML, or an actuator configuration)
+    /// Device that plays it: quest, console, iphone, lra-170, or a profile (TOML, or an actuator
+    /// configuration)
     #[arg(long, value_name = "NAME|FILE", default_value = "quest")]
     pub device: String,
     /// Most envelope points a second
@@ -90,7 +92,8 @@ struct ScoreReport {
 /// Runs the verb.
 ///
 /// # Errors
-/// When the input is none of the formats or breaks one's rules, an option is out of range, or a file cannot be written.
+/// When the input is none of the formats or breaks one's rules, an option is out of range, or a
+/// file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let port = Port::of(&options.output)?;
     check_destination(&options.output)?;

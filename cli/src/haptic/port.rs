@@ -41,7 +41,8 @@ impl Port {
         })
     }
 
-    /// Tests whether it holds the waveform itself. Samples that are written as `.wav` are what is left of them.
+    /// Tests whether it holds the waveform itself. Samples that are written as `.wav` are what is
+    /// left of them.
     pub fn is_waveform(self) -> bool {
         matches!(self, Self::Hjif | Self::Pcm)
     }

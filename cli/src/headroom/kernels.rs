@@ -1,4 +1,5 @@
-//! The whole chain of one contact beside the sum of its kernels, each alone on the same stroke: what is left over is glue.
+//! The whole chain of one contact beside the sum of its kernels, each alone on the same stroke:
+//! what is left over is glue.
 
 use super::{BLOCK_FRAMES, SAMPLE_RATE_HZ, refused};
 use crate::bench_scene::{Bench, Load, modes, plate};
@@ -34,7 +35,7 @@ pub(super) struct KernelRow {
     ns_per_sample: f64,
 }
 
-/// What a contact's kernels and its whole chain came to.
+/// Costs of a contact's kernels and of its whole chain.
 #[derive(Debug, Serialize)]
 pub(super) struct Kernels {
     rows: Vec<KernelRow>,
@@ -168,7 +169,7 @@ fn sample(
     map.sample(&path, out);
 }
 
-/// What the finger of the scene goes over.
+/// Ground under the finger of the scene.
 fn stroke(map: &mut impl HeightField) -> Result<Stroke, CliError> {
     let count = STROKE_BLOCKS * BLOCK_FRAMES;
     let path_m: Vec<[f64; 2]> = (0..count).map(|n| [0.1 * n as f64 / SAMPLE_RATE_HZ, 0.042]).collect();

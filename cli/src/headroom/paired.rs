@@ -1,4 +1,5 @@
-//! Rows that compare two things: in turn, a block's time of the one and of the other, so that both see the same machine; the median of the pairs.
+//! Rows that compare two things: in turn, a block's time of the one and of the other, so that both
+//! see the same machine; the median of the pairs.
 
 use super::{BLOCK_FRAMES, GROWTH_S, SAMPLE_RATE_HZ, refused};
 use crate::bench_scene::{Bench, Load};
@@ -13,7 +14,8 @@ use std::time::Instant;
 
 /// Frames rendered at a time, of either: so few that little else comes between them.
 const TURN_FRAMES: usize = BLOCK_FRAMES;
-/// Frames of blocks one after the other, between which a helper stays awake: as when a file is rendered.
+/// Frames of blocks one after the other, between which a helper stays awake: as when a file is
+/// rendered.
 const ROW_FRAMES: usize = 64 * BLOCK_FRAMES;
 /// Frames of the shortest blocks that sound cards ask for.
 const SHORT_FRAMES: usize = 16;

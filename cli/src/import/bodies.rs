@@ -30,7 +30,8 @@ pub fn modes(document: &Document, model: &Value, at: &str, gain: f64) -> Result<
     let (normals, areas) = normals(&points, &triangles);
     let whole: f64 = areas.iter().sum();
     let along = |mode: usize, point: usize| dot(shapes[mode * count + point], normals[point]);
-    // As `asperity modes` has it: a mode's gain is the root mean square, over the surface, of its motion out of it.
+    // As `asperity modes` has it: a mode's gain is the root mean square, over the surface, of its
+    // motion out of it.
     let square = |mode: usize| (0..count).map(|p| areas[p] * along(mode, p).powi(2)).sum::<f64>() / whole;
     let gains: Vec<f64> = (0..modes).map(|mode| gain * square(mode).sqrt()).collect();
     // Where a strike excites all modes most evenly.
@@ -88,7 +89,8 @@ fn triangles(document: &Document, model: &Value, at: &str, count: usize) -> Resu
     Ok(corners.chunks_exact(3).map(|c| [c[0] as u32, c[1] as u32, c[2] as u32]).collect())
 }
 
-/// Out of the surface at every point, and its share of the area; without triangles away from the middle, and all alike.
+/// Out of the surface at every point, and its share of the area; without triangles away from the
+/// middle, and all alike.
 fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[f64; 3]>, Vec<f64>) {
     let middle: [f64; 3] =
         std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);

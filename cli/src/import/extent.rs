@@ -1,6 +1,8 @@
-//! Metres that a texture spans on the surface of a node: |∂P/∂u| and |∂P/∂v| in the scene, averaged over its area.
+//! Metres that a texture spans on the surface of a node: |∂P/∂u| and |∂P/∂v| in the scene, averaged
+//! over its area.
 //!
-//! Tiling coordinates, `KHR_texture_transform`, matrices, scales of parents and quantised positions are all in these two numbers.
+//! Tiling coordinates, `KHR_texture_transform`, matrices, scales of parents and quantised positions
+//! are all in these two numbers.
 
 use crate::error::CliError;
 use asperity_shape::gltf::{Document, Placed, place};
@@ -11,7 +13,8 @@ const PLAIN_SIDE_M: f64 = 0.1;
 /// Widths that a scene takes, m.
 const WIDTHS_M: [f64; 2] = [1e-4, 100.0];
 
-/// Width and height of one repeat of a texture on a mesh; of the mesh's box where it has no coordinates.
+/// Width and height of one repeat of a texture on a mesh; of the mesh's box where it has no
+/// coordinates.
 pub fn extent_m(
     document: &Document,
     node: &Value,

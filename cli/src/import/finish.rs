@@ -62,8 +62,8 @@ pub struct Heights {
     pub relief_m: f64,
 }
 
-/// Solves a normal texture that spans `extent_m` for heights; its `scale` multiplies its slopes. Green points up the image, as
-/// glTF says.
+/// Solves a normal texture that spans `extent_m` for heights; its `scale` multiplies its slopes.
+/// Green points up the image, as glTF says.
 pub fn heights(
     document: &Document,
     texture: &Value,
@@ -95,7 +95,8 @@ pub fn heights(
     Ok(Heights { width, height, grey, relief_m: relief * scale.abs() * texel_m[0] })
 }
 
-/// A normal where texels are `higher` times as high as wide: slopes along v count that much more a texel.
+/// A normal where texels are `higher` times as high as wide: slopes along v count that much more a
+/// texel.
 fn stretched(rgb: [f64; 3], higher: f64) -> [f64; 3] {
     let [x, y, z] = rgb.map(|c| 2.0 * c - 1.0);
     // Maps of two channels leave blue empty.

@@ -1,5 +1,5 @@
-//! `asperity import SCENE.gltf -o DIR`: a glTF document becomes a scene that renders, by the draft `KHR_audio_rigid_bodies` or,
-//! without it, by its meshes and normal textures.
+//! `asperity import SCENE.gltf -o DIR`: a glTF document becomes a scene that renders, by the draft
+//! `KHR_audio_rigid_bodies` or, without it, by its meshes and normal textures.
 
 mod bodies;
 mod extent;
@@ -28,7 +28,8 @@ impl From<ShapeError> for CliError {
     }
 }
 
-/// Make a scene of a glTF document: its acoustic bodies and surfaces (the draft KHR_audio_rigid_bodies), or its meshes and normal textures
+/// Make a scene of a glTF document: its acoustic bodies and surfaces (the draft
+/// KHR_audio_rigid_bodies), or its meshes and normal textures
 #[derive(Debug, Args)]
 pub struct Options {
     /// The document
@@ -252,7 +253,8 @@ impl Scene {
         text
     }
 
-    /// A strike on every body, then a stroke on every surface: the document says what there is, not what is done to it.
+    /// A strike on every body, then a stroke on every surface: the document says what there is, not
+    /// what is done to it.
     fn contacts(&self) -> String {
         let mut text = String::new();
         let mut t = 0.0;

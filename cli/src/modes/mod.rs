@@ -39,7 +39,8 @@ pub struct Report {
 /// Runs the verb.
 ///
 /// # Errors
-/// When the mesh is no body, an option is out of range, the modes cannot be solved for, or a file cannot be written.
+/// When the mesh is no body, an option is out of range, the modes cannot be solved for, or a file
+/// cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let mut progress = Progress::new("solving", STEPS);
     let mut shown = 0;

@@ -16,7 +16,8 @@ const HEARD_HZ: f64 = 20_000.0;
 /// Turn the shape of a body into modes that ring wherever it is struck
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Shape of the body in metres: its surface (.obj, .stl, .ply, .glb, .gltf), or tetrahedra or its surface from Gmsh (.msh 2.2, 4.1)
+    /// Shape of the body in metres: its surface (.obj, .stl, .ply, .glb, .gltf), or tetrahedra or
+    /// its surface from Gmsh (.msh 2.2, 4.1)
     #[arg(value_name = "BODY.(obj|stl|ply|glb|gltf|msh)")]
     pub body: PathBuf,
     /// Modes file to write
@@ -34,7 +35,8 @@ pub struct Options {
     /// Density, kg/m³, instead of the material's
     #[arg(long, value_name = "KG_M3")]
     pub density_kg_m3: Option<f64>,
-    /// One of the file's parts: an object or a group of an .obj, a solid of an .stl, a node or a mesh of a glTF, or `largest`
+    /// One of the file's parts: an object or a group of an .obj, a solid of an .stl, a node or a
+    /// mesh of a glTF, or `largest`
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
     /// Unit of the file's numbers, metres where nothing is said
@@ -49,7 +51,8 @@ pub struct Options {
     /// Damping of a recorded body of the same material: its modes file
     #[arg(long, value_name = "HIT.modes.json")]
     pub damping_from: Option<PathBuf>,
-    /// Finds the level of each mode in the air at 1 m, in pascals, and its radiation loss; without this levels are relative
+    /// Finds the level of each mode in the air at 1 m, in pascals, and its radiation loss; without
+    /// this levels are relative
     #[arg(long)]
     pub radiation: bool,
     /// Write the shapes into a file of their own, OUT.shapes, a fifth as large

@@ -51,7 +51,8 @@ pub fn svg(name: &str, body: &SolvedBody, damping: &Damping, file: &ModesFile) -
     figure.svg()
 }
 
-/// One shape from above and the side, moved by itself, in the colours of its motion along the normal.
+/// One shape from above and the side, moved by itself, in the colours of its motion along the
+/// normal.
 fn shape(body: &SolvedBody, mode: usize) -> Panel {
     let field = &body.field;
     // From the front, the right and above.

@@ -1,7 +1,7 @@
 //! `asperity play SCENE.toml`: a scene and its contact log through the sound card, in real time.
 //!
-//! Needs the cargo feature `device` (or `jack`, `pulseaudio`); without it the verb is there and says so. `--tune` needs `web`, and plays unheard
-//! where there is no sound card.
+//! Needs the cargo feature `device` (or `jack`, `pulseaudio`); without it the verb is there and
+//! says so. `--tune` needs `web`, and plays unheard where there is no sound card.
 
 #[cfg(feature = "device")]
 mod session;

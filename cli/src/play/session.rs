@@ -1,5 +1,5 @@
-//! A scene played on a device: events go out a little ahead of the sound, each stamped with its sample,
-//! so that what is heard is what `render` writes.
+//! A scene played on a device: events go out a little ahead of the sound, each stamped with its
+//! sample, so that what is heard is what `render` writes.
 
 use super::Options;
 use super::watch::Watch;

@@ -1,5 +1,5 @@
-//! `play --watch`: the scene file, and the pictures and modes files that it names, are looked at while it plays, and what has changed is
-//! applied to what sounds.
+//! `play --watch`: the scene file, and the pictures and modes files that it names, are looked at
+//! while it plays, and what has changed is applied to what sounds.
 
 use crate::error::CliError;
 use asperity::Scene;
@@ -63,7 +63,8 @@ impl<'a> Watch<'a> {
         })
     }
 
-    /// Files that were written since the last look; one that is just being put in its place is not there yet.
+    /// Files that were written since the last look; one that is just being put in its place is not
+    /// there yet.
     fn touched(&self) -> Vec<PathBuf> {
         let now = |path: &PathBuf| written(path);
         let newer = self.named.iter().filter(|(path, seen)| now(path).is_some_and(|now| Some(now) != **seen));

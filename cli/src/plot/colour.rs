@@ -24,7 +24,8 @@ pub mod palette {
 pub enum Scale {
     /// Dark to bright with even steps to the eye, readable without colour vision: levels.
     Level,
-    /// Inwards blue, outwards red, from 0.1 to 1 with rest in grey at 0.55; below that there is nothing: white.
+    /// Inwards blue, outwards red, from 0.1 to 1 with rest in grey at 0.55; below that there is
+    /// nothing: white.
     Swing,
     /// Through the colours of earth: heights under a path.
     Earth,

@@ -1,4 +1,5 @@
-//! Pictures a person understands at a glance, as SVG that needs no font and no viewer but a browser.
+//! Pictures a person understands at a glance, as SVG that needs no font and no viewer but a
+//! browser.
 //!
 //! A [`Figure`] is rows of [`Panel`]s; a panel is two [`Axis`] and [`Layer`]s drawn in order. Units
 //! stand on the axes with the prefix that fits (µm, ms, kHz). A line of any length is drawn by its
@@ -58,7 +59,8 @@ impl Figure {
         self
     }
 
-    /// Adds a row of panels side by side, each as wide as its weight asks, with plots `height_px` high.
+    /// Adds a row of panels side by side, each as wide as its weight asks, with plots `height_px`
+    /// high.
     pub fn row(&mut self, height_px: f64, panels: impl IntoIterator<Item = Panel>) {
         self.rows.push(Row { height_px, panels: panels.into_iter().collect() });
     }
@@ -139,7 +141,8 @@ impl Series {
         Self::Uniform { start: start_s, step: 1.0 / rate_hz, y: samples.into_iter().collect() }
     }
 
-    /// A signal that holds each report's value until the next one, as the mean of `over_s` about each sample: without the stairs.
+    /// A signal that holds each report's value until the next one, as the mean of `over_s` about
+    /// each sample: without the stairs.
     #[must_use]
     pub fn of_reports(samples: &[f64], over_s: f64, rate_hz: f64, start_s: f64) -> Self {
         let sums: Vec<f64> = std::iter::once(0.0)

@@ -1,8 +1,8 @@
 //! Short-time spectra as a picture.
 //!
-//! Hann windows, doubled by zero padding; the level of a steady sine of amplitude A is 20 log₁₀ A, so
-//! levels read in the unit of the signal. Where several bins fall into one row of the picture the
-//! strongest counts, so that no partial is lost at the top of a logarithmic axis.
+//! Hann windows, doubled by zero padding; the level of a steady sine of amplitude A is 20 log₁₀ A,
+//! so levels read in the unit of the signal. Where several bins fall into one row of the picture
+//! the strongest counts, so that no partial is lost at the top of a logarithmic axis.
 
 use super::{ColourBar, Picture, colour::Scale};
 use asperity_fft::{FftPlanner, num_complex::Complex};
@@ -142,7 +142,8 @@ fn columns_of_levels<S: Copy + Into<f64>>(
                 *slot = Complex::new(value, 0.0);
             }
             fft.process_with_scratch(&mut buffer, &mut scratch);
-            // Squares until the last: a root of every bin of every window would cost as much as the transforms.
+            // Squares until the last: a root of every bin of every window would cost as much as the
+            // transforms.
             for (best, bin) in amplitude.iter_mut().zip(&buffer) {
                 *best = best.max(bin.norm_sqr());
             }

@@ -50,7 +50,8 @@ pub struct Options {
     /// Seed of every random number, whatever the scene says
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Accuracy of the engine, from the fastest on: fast, default, accurate; the options below count more
+    /// Accuracy of the engine, from the fastest on: fast, default, accurate; the options below
+    /// count more
     #[arg(long, value_name = "NAME", value_parser = presets(), default_value = "default")]
     pub preset: Preset,
     /// Integrator of the contact model
@@ -59,7 +60,8 @@ pub struct Options {
     /// Way from sparse positions to a path
     #[arg(long, value_name = "NAME", value_parser = paths())]
     pub path: Option<PathMode>,
-    /// Instruction set of the kernels whose last bits depend on it: portable gives the same files on every processor
+    /// Instruction set of the kernels whose last bits depend on it: portable gives the same files
+    /// on every processor
     #[arg(long, value_name = "NAME", value_parser = kernels())]
     pub kernel: Option<Isa>,
     /// Most threads that render at once; the files are the same
@@ -77,7 +79,8 @@ pub struct Options {
     /// Write STEM.svg, a picture of what happened
     #[arg(long)]
     pub plot: bool,
-    /// Write the first haptic channel as a headset's controller plays it, too: `asperity haptic` has more options
+    /// Write the first haptic channel as a headset's controller plays it, too: `asperity haptic`
+    /// has more options
     #[arg(long, value_name = "OUT.(haptic|ahap|hjif|android.json|pcm.wav|wav)")]
     pub port: Option<PathBuf>,
     /// Print one JSON object
@@ -260,7 +263,8 @@ fn sand_suffix(surface: &str) -> String {
     format!("{}.sand.png", file_name(surface))
 }
 
-/// Renders a scene and a log that are in memory, as [`render`] does without options. Returns the samples and what is to be warned of.
+/// Renders a scene and a log that are in memory, as [`render`] does without options. Returns the
+/// samples and what is to be warned of.
 ///
 /// # Errors
 /// When the scene or the log is refused.

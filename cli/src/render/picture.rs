@@ -1,7 +1,8 @@
 //! `render --plot`: what happened, at a glance.
 //!
-//! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on it;
-//! the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and spectra.
+//! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on
+//! it; the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and
+//! spectra.
 
 use crate::plot::{
     Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
@@ -177,8 +178,8 @@ fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 
     drawn(take).flat_map(|(contact, _)| values(contact)).copied().fold(0.0, f64::max)
 }
 
-/// Text of the legend: the pad where there is one contact, and as much of each name as there is room
-/// for where there are more. The colours are those of the force and speed panels above.
+/// Text of the legend: the pad where there is one contact, and as much of each name as there is
+/// room for where there are more. The colours are those of the force and speed panels above.
 fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
     match take.contacts.len() {
         0 | 1 => "pad".to_owned(),
@@ -340,7 +341,8 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
     panel
 }
 
-/// A path on the one tile of a surface that is drawn, m; where it goes on at the other edge the line is broken.
+/// A path on the one tile of a surface that is drawn, m; where it goes on at the other edge the
+/// line is broken.
 fn on_one_tile(path_uv: &[[f64; 2]], ground: &Ground) -> Vec<[f64; 2]> {
     let fold = |x: f64| match ground.wrap {
         Wrap::Repeat => x.rem_euclid(1.0),

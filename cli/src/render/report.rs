@@ -57,7 +57,8 @@ pub struct Report {
     pub sand: BTreeMap<String, SandReport>,
     /// Every file written.
     pub files: Vec<PathBuf>,
-    /// Events refused, lost or clipped, and why a file is silence: one line each, with what mends it.
+    /// Events refused, lost or clipped, and why a file is silence: one line each, with what mends
+    /// it.
     pub warnings: Vec<String>,
 }
 

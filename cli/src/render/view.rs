@@ -65,8 +65,8 @@ pub fn draw(
 /// Texels a side of a surface in the picture.
 const GROUND_PX: usize = 192;
 
-/// The surfaces as they are seen from above: what has a relief as it is at first, sand as it lies afterwards, and what is flat by its
-/// map of roughness.
+/// The surfaces as they are seen from above: what has a relief as it is at first, sand as it lies
+/// afterwards, and what is flat by its map of roughness.
 fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> Vec<Ground> {
     file.surfaces
         .iter()

@@ -37,7 +37,8 @@ fn errors(take: &Take, truth: &Reference) -> [f64; 4] {
     ]
 }
 
-/// A choice against the whole chain. Of an exciter: pad, force and what is felt do not depend on it.
+/// A choice against the whole chain. Of an exciter: pad, force and what is felt do not depend on
+/// it.
 fn row(
     name: (&'static str, String),
     chain: &Chain,

@@ -1,12 +1,13 @@
-//! From path to ear and finger: each engine preset against the whole chain in f64 at 16 times the rate, and how much of its error each
-//! stage makes.
+//! From path to ear and finger: each engine preset against the whole chain in f64 at 16 times the
+//! rate, and how much of its error each stage makes.
 //!
 //! ```text
 //! E = preset − reference = (preset − A) + (A − B) + (B − reference)
 //! A: the preset, its contact exact at 16 times the rate     B: the same with every mode     reference: B's impulses into a bank in f64
 //! ```
-//! A stage's share is the power of its difference over the sum of all three, so that shares sum to 1. The path is the same everywhere: a
-//! straight stroke, of which reports tell the truth. What sparse reports of a real one cost stands in [`super::from_reports`].
+//! A stage's share is the power of its difference over the sum of all three, so that shares sum to
+//! 1. The path is the same everywhere: a straight stroke, of which reports tell the truth. What
+//! sparse reports of a real one cost stands in [`super::from_reports`].
 
 use super::SAMPLE_RATE_HZ;
 use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, plate, take};
@@ -21,8 +22,8 @@ use std::f64::consts::TAU;
 
 /// The reference's inner samples over the engine's.
 const INNER: usize = 16;
-/// Delay in samples of an impulse of the tap behind the force that it is: the kernel is two samples long on each side, and a mean
-/// over a step belongs half a step before its end.
+/// Delay in samples of an impulse of the tap behind the force that it is: the kernel is two samples
+/// long on each side, and a mean over a step belongs half a step before its end.
 const LATE_SAMPLES: f64 = 2.5;
 /// The stages, from the contact on.
 const STAGES: [&str; 3] = ["contact", "modes left out", "number format of the bank"];
@@ -69,7 +70,8 @@ pub struct Reference {
     pub felt: Vec<f64>,
     /// At the inner ones.
     heard: Vec<f64>,
-    /// Contact at the engine's samples: the pad's displacement, and the mean force over the sample that ends there.
+    /// Contact at the engine's samples: the pad's displacement, and the mean force over the sample
+    /// that ends there.
     pub contact: [Vec<f64>; 2],
 }
 
@@ -106,7 +108,8 @@ impl Reference {
     }
 }
 
-/// Pad and force of a render with inner rows, at the engine's samples: where the pad is, and the mean force over the sample that ends there.
+/// Pad and force of a render with inner rows, at the engine's samples: where the pad is, and the
+/// mean force over the sample that ends there.
 pub fn contact_of(take: &Take) -> [Vec<f64>; 2] {
     let every = (take.inner_rate_hz / take.rate_hz).round().max(1.0) as usize;
     let mean = |n: usize| {
@@ -120,8 +123,9 @@ pub fn contact_of(take: &Take) -> [Vec<f64>; 2] {
 
 /// A body under impulses as the tap shows them, in f64, [`LATE_SAMPLES`] late.
 ///
-/// An impulse is the force of the step that ends at its sample, spread by a cubic B-spline and its delay; each mode undoes the spline. h₀ is
-/// the mode's continuous integral less the other samples of its response, so that a slow force is answered exactly whatever the phase.
+/// An impulse is the force of the step that ends at its sample, spread by a cubic B-spline and its
+/// delay; each mode undoes the spline. h₀ is the mode's continuous integral less the other samples
+/// of its response, so that a slow force is answered exactly whatever the phase.
 fn rung(model: &ModalModel, impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
     let mut out = vec![0.0; impulse_n_s.len()];
     for mode in &model.modes {
@@ -147,8 +151,8 @@ fn rung(model: &ModalModel, impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
     out
 }
 
-/// Delay of a preset's sound, s: its forces are means over the inner sample that ends at a row, and the ring's delay is left where the inner
-/// samples do not hide it.
+/// Delay of a preset's sound, s: its forces are means over the inner sample that ends at a row, and
+/// the ring's delay is left where the inner samples do not hide it.
 pub fn late_s(take: &Take) -> f64 {
     0.5 / take.inner_rate_hz + take.sound_late_s
 }
@@ -249,7 +253,8 @@ pub fn presets() -> Result<Vec<Preset>, CliError> {
         .collect()
 }
 
-/// The whole renderer, one contact, of each preset: the median over the cases of the best of some rounds, in turns.
+/// The whole renderer, one contact, of each preset: the median over the cases of the best of some
+/// rounds, in turns.
 fn ns_per_sample() -> Result<Vec<f64>, CliError> {
     const ROUNDS: usize = 5;
     let mut best = vec![vec![f64::INFINITY; CASES.len()]; EnginePreset::ALL.len()];

@@ -1,5 +1,6 @@
-//! Excitation that the ear misses where something is left out: differences of its excitation, with spreading and the threshold in quiet
-//! (`asperity_dsp::masking`), in cells of an ERB and 20 ms of what was rendered.
+//! Excitation that the ear misses where something is left out: differences of its excitation, with
+//! spreading and the threshold in quiet (`asperity_dsp::masking`), in cells of an ERB and 20 ms of
+//! what was rendered.
 
 use asperity_dsp::masking::{erb_number, excitation_db, quiet_db_spl};
 use asperity_fft::{FftPlanner, num_complex::Complex};
@@ -64,8 +65,8 @@ pub fn missed(less: &[f64], whole: &[f64], rate_hz: f64) -> Missed {
     missed_in_the_mean([(less, whole)].into_iter(), rate_hz)
 }
 
-/// Mean over several sounds, as strikes whose modes begin at other phases: two tones within an ERB beat, and of a beat it is chance which
-/// frame it falls in.
+/// Mean over several sounds, as strikes whose modes begin at other phases: two tones within an ERB
+/// beat, and of a beat it is chance which frame it falls in.
 pub fn missed_in_the_mean<'a>(pairs: impl Iterator<Item = (&'a [f64], &'a [f64])>, rate_hz: f64) -> Missed {
     let [mut less, mut whole] = [Vec::new(), Vec::new()];
     for (one, other) in pairs {

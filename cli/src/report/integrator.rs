@@ -1,9 +1,10 @@
 //! Integrators of the contact model, on the named cases.
 //!
-//! The reference is the engine itself at eight times the rate with exact events, which differs from an independent re-integration by
-//! less than a tenth of any error stated here (`cli/tests/report.rs` re-integrates profiles of other seeds with a Runge–Kutta scheme
-//! of its own). A row's force is a mean over a sample, and so is that of the reference: of the sample that ends at the row, or, for the
-//! Euler schemes, is centred on it.
+//! The reference is the engine itself at eight times the rate with exact events, which differs from
+//! an independent re-integration by less than a tenth of any error stated here
+//! (`cli/tests/report.rs` re-integrates profiles of other seeds with a Runge–Kutta scheme of its
+//! own). A row's force is a mean over a sample, and so is that of the reference: of the sample that
+//! ends at the row, or, for the Euler schemes, is centred on it.
 
 use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, take};
 use super::resampled::{after_the_lead_in, between};
@@ -98,8 +99,9 @@ pub fn rms(errors: &[[f64; 3]]) -> [f64; 3] {
     })
 }
 
-/// The errors of those strokes that forget how they came to where they are, if two do, otherwise of all. Where a path moved by a picometre ends
-/// elsewhere, no integrator and no ground is at fault, and one such stroke in four would be all that is stated.
+/// The errors of those strokes that forget how they came to where they are, if two do, otherwise of
+/// all. Where a path moved by a picometre ends elsewhere, no integrator and no ground is at fault,
+/// and one such stroke in four would be all that is stated.
 fn of_what_forgets(errors: &[[f64; 3]], forget: &[bool]) -> Vec<[f64; 3]> {
     let some: Vec<_> =
         errors.iter().zip(forget).filter(|(_, forgets)| **forgets).map(|(error, _)| *error).collect();

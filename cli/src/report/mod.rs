@@ -1,7 +1,7 @@
 //! `asperity report`: what every choice the engine offers costs, and what it costs in accuracy.
 //!
-//! One file an axis; each measures its choices on the same input against a reference that it names. The
-//! error is the rms of the difference over the alternating rms of the reference.
+//! One file an axis; each measures its choices on the same input against a reference that it names.
+//! The error is the rms of the difference over the alternating rms of the reference.
 
 mod blocks;
 mod cases;
@@ -70,7 +70,8 @@ pub struct Row {
     /// Delay of a path behind the reports, ms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency_ms: Option<f64>,
-    /// Missed excitation where modes of a struck body are left out: within this 99 of 100 cells of an ERB and 20 ms excite the ear as all modes do, dB.
+    /// Missed excitation where modes of a struck body are left out: within this 99 of 100 cells of
+    /// an ERB and 20 ms excite the ear as all modes do, dB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excitation_db: Option<f64>,
 }

@@ -66,7 +66,8 @@ fn bank(groups: &[ModeGroup], kernel: Level, impulses: &[f32]) -> Vec<f32> {
     run(ModalBank::new(kernel, groups, states).sleeping_below(0.0), groups.len(), impulses)
 }
 
-/// Bank whose groups sleep once they have rung out, and of which only the first `driven` are excited.
+/// Bank whose groups sleep once they have rung out, and of which only the first `driven` are
+/// excited.
 fn sleeping_bank(groups: &[ModeGroup], driven: usize, threshold: f32, impulses: &[f32]) -> Vec<f32> {
     let states = vec![GroupState::REST; groups.len()];
     run(ModalBank::new(Level::detect(), groups, states).sleeping_below(threshold), driven, impulses)
@@ -140,14 +141,16 @@ pub fn stroked_sleep_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows.collect())
 }
 
-/// A body in the order in which the engine leaves modes out, and how many groups hear at each level.
+/// A body in the order in which the engine leaves modes out, and how many groups hear at each
+/// level.
 fn in_order_of_need(modes: &[Mode]) -> (Vec<Mode>, SheddingLevels) {
     let mut order = vec![Ranked::default(); modes.len()];
     let levels = shedding_order(modes, TYPICAL_IMPULSE_N_S, LOUDEST_DB_SPL, &mut order);
     (order.iter().map(|ranked| modes[ranked.index]).collect(), levels)
 }
 
-/// A stroked body of which some groups no longer hear the force, as the governor's first level leaves it.
+/// A stroked body of which some groups no longer hear the force, as the governor's first level
+/// leaves it.
 pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
     let strokes = Strokes::new()?;
     let (modes, levels) = in_order_of_need(&body());

@@ -1,8 +1,9 @@
 //! Path modes compared: sparse positions made into a path.
 //!
-//! A hand reaches from place to place (minimum jerk, 0.4–1 s a reach, below 15 Hz), reported 60 times a second in four ways: with its
-//! velocity or without, with positions that are exact or have a tracker's 50 µm of noise. The error is that of the velocity, which is the
-//! pitch of what is felt and heard, at the lag that the mode states.
+//! A hand reaches from place to place (minimum jerk, 0.4–1 s a reach, below 15 Hz), reported 60
+//! times a second in four ways: with its velocity or without, with positions that are exact or have
+//! a tracker's 50 µm of noise. The error is that of the velocity, which is the pitch of what is
+//! felt and heard, at the lag that the mode states.
 
 use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;

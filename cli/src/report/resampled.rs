@@ -12,7 +12,8 @@ pub fn after_the_lead_in(count: usize, rate_hz: f64) -> Range<usize> {
     at(STROKE_S.0 + MARGIN_S)..at(STROKE_S.1 - MARGIN_S)
 }
 
-/// A signal at a place between its samples, by the polynomial of degree 5 through the six about it: −100 dB up to a twentieth of its rate.
+/// A signal at a place between its samples, by the polynomial of degree 5 through the six about it:
+/// −100 dB up to a twentieth of its rate.
 pub fn between(signal: &[f64], at: f64) -> f64 {
     let first = at.floor() as i64 - 2;
     let x = at - first as f64;

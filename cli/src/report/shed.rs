@@ -1,4 +1,5 @@
-//! Levels of load, as the engine renders them: the excitation missed by ear and finger, and the cost saved.
+//! Levels of load, as the engine renders them: the excitation missed by ear and finger, and the
+//! cost saved.
 
 use super::excitation::{Missed, missed, missed_in_the_mean};
 use super::{SAMPLE_RATE_HZ, refused};

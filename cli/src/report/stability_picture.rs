@@ -13,7 +13,8 @@ const BLOCK_GAP_PX: f64 = 60.0;
 const FILLS: [&str; 4] = ["#cfe3f7", "#e4d7f5", "#d3eddd", "#fde3c4"];
 const CHAOTIC: &str = "#b71c1c";
 
-/// Schemes that run when a scheme is asked for, a block of cells for each scheme: stiffness upwards, rate to the right.
+/// Schemes that run when a scheme is asked for, a block of cells for each scheme: stiffness
+/// upwards, rate to the right.
 #[must_use]
 pub fn svg(cells: &[Cell]) -> String {
     let mut svg = Svg::new();

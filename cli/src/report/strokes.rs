@@ -1,4 +1,5 @@
-//! Costs of a choice of the bank on the named cases: a body of 256 modes under what the contact of each case sends it.
+//! Costs of a choice of the bank on the named cases: a body of 256 modes under what the contact of
+//! each case sends it.
 
 use super::cases::{CASES, Chain, SEEDS, take};
 use super::resampled::after_the_lead_in;

@@ -1,4 +1,5 @@
-//! From heights to what a contact makes of them, without an engine about it: ways to read a ground compared on the named cases.
+//! From heights to what a contact makes of them, without an engine about it: ways to read a ground
+//! compared on the named cases.
 //!
 //! ```text
 //! heights → contact, exact between events → pad, force → nine modes in f64 → heard
@@ -47,7 +48,8 @@ fn through(case: &Case, heights: &[f64], rate_hz: f64) -> Result<Take, CliError>
     Ok(take)
 }
 
-/// The plate of the cases under a force, mode by mode; half a sample late, as a mean over the sample that ends there is.
+/// The plate of the cases under a force, mode by mode; half a sample late, as a mean over the
+/// sample that ends there is.
 fn rung(force_n: &[f64], rate_hz: f64) -> Vec<f64> {
     let model = plate();
     let mut out = vec![0.0; force_n.len()];

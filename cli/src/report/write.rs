@@ -158,7 +158,7 @@ fn decibels(error: f64) -> String {
 const ON_THE_PAGE: [&str; 6] =
     ["integrator", "path", "map filter", "noise octaves", "mode culling", "number format"];
 
-/// What the engine offers, a line a choice, and what each axis is compared with.
+/// Choices that the engine offers, a line each, and what each axis is compared with.
 fn choices_table(rows: &[Row]) -> String {
     let mut text = "\n## choices\n\n| of | choice | ns a sample | error |\n|---|---|--:|--:|\n".to_owned();
     let axes = axes(rows);
@@ -181,7 +181,7 @@ fn choices_table(rows: &[Row]) -> String {
     text + ".\n"
 }
 
-/// What is printed, without strokes, levels of load and stability.
+/// Printed part, without strokes, levels of load and stability.
 #[must_use]
 pub fn markdown(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     let text = format!(

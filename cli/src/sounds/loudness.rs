@@ -5,8 +5,8 @@ use ebur128::{Channel, EbuR128, Mode};
 /// Length of the shortest gating block, s.
 const BLOCK_S: f64 = 0.4;
 
-/// Loudness in LUFS; none of silence. What is shorter than a gating block counts with the silence that fills one. Every channel
-/// is a bus of its own and counts as a front one does.
+/// Loudness in LUFS; none of silence. What is shorter than a gating block counts with the silence
+/// that fills one. Every channel is a bus of its own and counts as a front one does.
 pub fn integrated_lufs(channels: &[&[f32]], rate_hz: f64) -> Option<f64> {
     let count = u32::try_from(channels.len()).ok()?;
     let mut meter = EbuR128::new(count, rate_hz.round() as u32, Mode::I).ok()?;

@@ -1,5 +1,5 @@
-//! Sets of sounds, as `strike` and `stroke` write them: one gain for the set, trimmed, with loudness and peak, and the scene and
-//! the log of each beside it.
+//! Sets of sounds, as `strike` and `stroke` write them: one gain for the set, trimmed, with
+//! loudness and peak, and the scene and the log of each beside it.
 //!
 //! | file | content |
 //! |---|---|
@@ -7,7 +7,8 @@
 //! | `NAME.haptic.wav` | what a finger feels, 32-bit float as `render` writes it |
 //! | `NAME.toml`, `NAME.jsonl` | the scene and the contact log, which `asperity render` turns into the same samples |
 //!
-//! Where the scene has no gain of its own the loudest sample of the set lies 1 dB below full scale, so that what is hit harder stays louder.
+//! Where the scene has no gain of its own the loudest sample of the set lies 1 dB below full scale,
+//! so that what is hit harder stays louder.
 
 mod loudness;
 mod seam;

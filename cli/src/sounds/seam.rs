@@ -1,12 +1,13 @@
-//! Seam of a loop: the end of a stretch is blended into what came before its beginning, so that it can follow itself.
+//! Seam of a loop: the end of a stretch is blended into what came before its beginning, so that it
+//! can follow itself.
 //!
 //! ```text
 //! y(n) = x(from + n)                                              n < N − F
 //! y(n) = (a x(from + n − N) + (1 − a) x(from + n)) / g            n ≥ N − F,  a = (n − N + F + 1) / (F + 1)
 //! g    = √(a² + (1 − a)² + 2 ρ a (1 − a))                         ρ the correlation of the two
 //! ```
-//! The last sample is all but x(from − 1), and x(from) follows: the step at the seam is one of the signal's own. With ρ the level holds for
-//! what repeats (ρ = 1) and for noise (ρ = 0).
+//! The last sample is all but x(from − 1), and x(from) follows: the step at the seam is one of the
+//! signal's own. With ρ the level holds for what repeats (ρ = 1) and for noise (ρ = 0).
 
 use asperity::offline::Render;
 
@@ -24,7 +25,8 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Cuts every channel to the loop. Returns the first sample, the one behind the last, and how many were blended.
+    /// Cuts every channel to the loop. Returns the first sample, the one behind the last, and how
+    /// many were blended.
     pub fn apply(&self, render: &mut Render) -> [usize; 3] {
         let rate_hz = render.sample_rate_hz;
         let frames = render.audio.first().map_or(0, Vec::len);

@@ -43,7 +43,8 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Meaning of the first argument, and what was assumed; a photograph's maps are made below the folder first.
+    /// Meaning of the first argument, and what was assumed; a photograph's maps are made below the
+    /// folder first.
     ///
     /// # Errors
     /// When it is nothing to stroke.
@@ -208,7 +209,8 @@ impl Ground {
         })
     }
 
-    /// The scene with a probe, and the name that contacts call it by; none where it is the default one.
+    /// The scene with a probe, and the name that contacts call it by; none where it is the default
+    /// one.
     ///
     /// # Errors
     /// When there is no probe of that name.

@@ -1,4 +1,5 @@
-//! Hand: how a finger or a tool moves over a surface, as the contact log that a tracker would report.
+//! Hand: how a finger or a tool moves over a surface, as the contact log that a tracker would
+//! report.
 //!
 //! ```text
 //! line     runs on at one speed, a little aslant; where the ground ends, to and fro on a sine
@@ -166,7 +167,8 @@ impl Hand {
         }
     }
 
-    /// Radius, m, and rate, rad/s, of whole turns in the time at the speed, the radius within reach.
+    /// Radius, m, and rate, rad/s, of whole turns in the time at the speed, the radius within
+    /// reach.
     fn turns(&self, reach_m: f64) -> (f64, f64) {
         let count = (self.speed_m_s * self.seconds / (TAU * reach_m)).ceil().max(1.0);
         let omega = TAU * count / self.seconds;

@@ -1,4 +1,5 @@
-//! `asperity stroke WHAT -o DIR`: what a surface sounds and feels like under a finger or a tool, without a scene and without a log.
+//! `asperity stroke WHAT -o DIR`: what a surface sounds and feels like under a finger or a tool,
+//! without a scene and without a log.
 //!
 //! | file | content |
 //! |---|---|
@@ -20,7 +21,8 @@ use std::path::PathBuf;
 /// A loop begins this long after the landing, when the finger's arrival has died away, s.
 const SETTLED_S: f64 = 1.0;
 
-/// Stroke a surface and write what it sounds and feels like, with the scene and the log of each sound beside it
+/// Stroke a surface and write what it sounds and feels like, with the scene and the log of each
+/// sound beside it
 #[derive(Debug, Clone, Args)]
 pub struct Options {
     /// A height map, a photograph, a folder of `asperity texture from-photo`, or a scene
@@ -35,7 +37,8 @@ pub struct Options {
     /// Pressing force, N
     #[arg(long, value_name = "N", num_args = 1.., value_delimiter = ',', default_value = "0.6", value_parser = positive)]
     pub force: Vec<f64>,
-    /// Motion of the hand: line, circle, zigzag, or a contact log, which is rendered at the scene's own levels
+    /// Motion of the hand: line, circle, zigzag, or a contact log, which is rendered at the scene's
+    /// own levels
     #[arg(long, value_name = "line|circle|zigzag|LOG.jsonl", default_value = "line")]
     pub path: Way,
     /// Length of the stroke, and of a loop, s
@@ -50,7 +53,8 @@ pub struct Options {
     /// Width of a map or a photograph, m [default: 40 mm a 256 texels]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub width_m: Option<f64>,
-    /// Height of white over black, m [default: 1 mm for a map, what contrast gives for a photograph]
+    /// Height of white over black, m [default: 1 mm for a map, what contrast gives for a
+    /// photograph]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub relief_m: Option<f64>,
     /// Material of a map's body [default: wood]

@@ -32,7 +32,8 @@ pub struct AnalyzeArgs {
     /// Share of the median distortion up to which the document's method believes a minimum, 0–1
     #[arg(long, default_value_t = 0.5, value_parser = share)]
     pub threshold: f64,
-    /// Write what repeats, one cell or strip, as a 16-bit PNG (black to white: its lowest to its highest grey)
+    /// Write what repeats, one cell or strip, as a 16-bit PNG (black to white: its lowest to its
+    /// highest grey)
     #[arg(long, value_name = "FILE")]
     pub primitive: Option<PathBuf>,
     /// Print one JSON object

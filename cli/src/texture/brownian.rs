@@ -1,4 +1,5 @@
-//! `asperity texture brownian --hurst H --size N --seed S -o OUT.png`: a Brownian surface as a picture.
+//! `asperity texture brownian --hurst H --size N --seed S -o OUT.png`: a Brownian surface as a
+//! picture.
 
 use super::{positive, say_preview, write_heights};
 use crate::error::CliError;
@@ -25,10 +26,12 @@ pub struct Options {
     /// Width of the picture on the surface, m
     #[arg(long, value_name = "M", default_value_t = 0.1, value_parser = positive)]
     pub width_m: f64,
-    /// Let the surface end at its edges instead of repeating without a seam (at most 1024 texels a side)
+    /// Let the surface end at its edges instead of repeating without a seam (at most 1024 texels a
+    /// side)
     #[arg(long)]
     pub open: bool,
-    /// Random midpoint displacement, the older construction, instead of the exact one; implies --open
+    /// Random midpoint displacement, the older construction, instead of the exact one; implies
+    /// --open
     #[arg(long)]
     pub midpoint: bool,
     /// 16-bit PNG to write

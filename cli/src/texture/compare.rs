@@ -1,5 +1,5 @@
-//! `asperity texture compare A B …`: can a finger tell them apart? Document 002's ABX tables without
-//! observers.
+//! `asperity texture compare A B …`: can a finger tell them apart? Document 002's ABX tables
+//! without observers.
 
 use super::{grey, positive, refused};
 use crate::error::CliError;

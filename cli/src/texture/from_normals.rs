@@ -159,7 +159,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     };
     let x_may_be_in_alpha = !options.x_in_alpha && may_be_in_alpha(options, [&red, &green]);
     let found = heights_from_normals(&red, &green, &blue, &settings).map_err(|error| {
-        let in_alpha = || CliError::file(&options.normals, "holds no normals in red, green and blue", IN_ALPHA);
+        let in_alpha =
+            || CliError::file(&options.normals, "holds no normals in red, green and blue", IN_ALPHA);
         let is_none = error.field == "normal map";
         if is_none && x_may_be_in_alpha { in_alpha() } else { refused(&options.normals, &error) }
     })?;
@@ -229,7 +230,8 @@ fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<
 const LEANS: f64 = 0.1;
 
 /// Way out where x is not in red.
-const IN_ALPHA: &str = "red is blank or a copy of green, and alpha varies: if x lies there (DXT5nm), write --x-in-alpha";
+const IN_ALPHA: &str =
+    "red is blank or a copy of green, and alpha varies: if x lies there (DXT5nm), write --x-in-alpha";
 
 /// Tests whether red holds nothing of its own while alpha varies.
 fn may_be_in_alpha(options: &Options, [red, green]: [&Raster; 2]) -> bool {

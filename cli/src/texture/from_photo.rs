@@ -1,4 +1,5 @@
-//! `asperity texture from-photo PHOTO -o DIR`: a photograph becomes displacement, roughness and a scene.
+//! `asperity texture from-photo PHOTO -o DIR`: a photograph becomes displacement, roughness and a
+//! scene.
 
 mod overview;
 mod report;
@@ -55,7 +56,8 @@ pub struct Options {
     /// Factor on the heights that contrast gives, as a report of the same camera and light told it
     #[arg(long, value_name = "FACTOR", value_parser = positive, conflicts_with = "known")]
     pub calibration: Option<f64>,
-    /// Photograph of a sample of known relief by the same camera, light and distance: takes the calibration from it
+    /// Photograph of a sample of known relief by the same camera, light and distance: takes the
+    /// calibration from it
     #[arg(long, value_name = "PHOTO", requires = "known_relief_m")]
     pub known: Option<PathBuf>,
     /// Relief of that sample from its lowest to its highest point, m

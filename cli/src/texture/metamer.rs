@@ -17,7 +17,8 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Correlation with the original below which a metamer is warned of: what it shares with its original is hardly seen.
+/// Correlation with the original below which a metamer is warned of: what it shares with its
+/// original is hardly seen.
 const LITTLE_IS_LEFT: f64 = 0.3;
 
 /// Make one height map feel like another
@@ -38,13 +39,16 @@ pub struct Options {
     /// Orientations of each band
     #[arg(long, default_value_t = core::ORIENTATIONS)]
     pub orientations: usize,
-    /// Passes over bands, residuals and heights on a grid of 256 × 256 texels; coarser grids get more, finer ones fewer
+    /// Passes over bands, residuals and heights on a grid of 256 × 256 texels; coarser grids get
+    /// more, finer ones fewer
     #[arg(long, default_value_t = core::PASSES, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
     pub iterations: usize,
-    /// End as soon as the mean distance of the sub-bands is this small, in deviations of the reference
+    /// End as soon as the mean distance of the sub-bands is this small, in deviations of the
+    /// reference
     #[arg(long, value_name = "SIGMA", value_parser = positive)]
     pub until: Option<f64>,
-    /// Largest share of the reference's own arrangement to take where the original's does not come near enough
+    /// Largest share of the reference's own arrangement to take where the original's does not come
+    /// near enough
     #[arg(long, value_name = "0-1", default_value_t = 1.0, value_parser = share)]
     pub borrow: f64,
     /// Way of changing the original
@@ -111,8 +115,8 @@ struct Report {
     iterations: Option<usize>,
     /// Passes done on the map's own grid.
     passes: usize,
-    /// Histogram distance of each sub-band: mean distance of equal quantiles over the reference's σ. Those after are of the
-    /// file, read back.
+    /// Histogram distance of each sub-band: mean distance of equal quantiles over the reference's
+    /// σ. Those after are of the file, read back.
     bands: Vec<Band>,
     mean_before: f64,
     mean_after: f64,
@@ -120,8 +124,9 @@ struct Report {
     heights_after: f64,
     /// Share of the reference's own arrangement in the surface that the passes began with.
     borrowed: f64,
-    /// Mean correlation of the oriented sub-bands with the original's in place and with the reference's at the best of all
-    /// shifts: how much of either arrangement the surface has, 1 all and 0 none.
+    /// Mean correlation of the oriented sub-bands with the original's in place and with the
+    /// reference's at the best of all shifts: how much of either arrangement the surface has, 1 all
+    /// and 0 none.
     correlation_with_original: f64,
     correlation_with_reference: f64,
     /// That shift of the reference along u and v, texels.
@@ -199,7 +204,8 @@ fn settings(options: &Options) -> MetamerOptions {
     }
 }
 
-/// Size of a texel of the original: told, by its width or as in the document, 40 mm over 256 texels.
+/// Size of a texel of the original: told, by its width or as in the document, 40 mm over 256
+/// texels.
 fn texel_m(options: &Options, width: usize) -> f64 {
     let by_width = options.object.width_mm.map(|width_mm| 1e-3 * width_mm / width as f64);
     by_width.or(options.mm_per_px.map(|mm| 1e-3 * mm)).unwrap_or(TEXEL_M)

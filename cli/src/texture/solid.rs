@@ -1,4 +1,5 @@
-//! `asperity texture solid PRESET --size N -o OUT.png`: one of the seven solid-noise materials as a picture.
+//! `asperity texture solid PRESET --size N -o OUT.png`: one of the seven solid-noise materials as a
+//! picture.
 
 use super::{positive, say_preview, write_heights};
 use crate::error::CliError;
@@ -9,7 +10,8 @@ use asperity_texture::solid_noise::{SolidCut, SolidNoise};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Make a 16-bit picture of a solid-noise material: sandpaper, granite, rough glass, wood, sand, gravel, pebbles
+/// Make a 16-bit picture of a solid-noise material: sandpaper, granite, rough glass, wood, sand,
+/// gravel, pebbles
 #[derive(Debug, Args)]
 pub struct Options {
     /// Name of the material

@@ -19,7 +19,8 @@ pub fn told(output: &Output) -> (i32, String, String) {
     (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
 }
 
-/// Checks that a run failed as it should: status 1, nothing on stdout, one `error:` line with all parts.
+/// Checks that a run failed as it should: status 1, nothing on stdout, one `error:` line with all
+/// parts.
 pub fn assert_refused(output: &Output, parts: &[&str]) {
     let (status, out, err) = told(output);
     assert_eq!(status, 1, "stdout: {out}\nstderr: {err}");

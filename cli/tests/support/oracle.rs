@@ -19,7 +19,8 @@ pub struct Row {
     pub normal_force_n: f64,
 }
 
-/// A stroke of `count` events, 60 a second, and its end at `end_s`: place (metres) and velocity at a time.
+/// A stroke of `count` events, 60 a second, and its end at `end_s`: place (metres) and velocity at
+/// a time.
 fn stroke(count: u32, end_s: f64, normal_force_n: f64, path: impl Fn(f64) -> [[f64; 2]; 2]) -> String {
     let mut lines = String::new();
     for index in 0..count {

@@ -13,13 +13,14 @@ pub const GAIN_RAMP_S: f64 = 0.02;
 /// Samples below this are written as zero: 300 dB below full scale.
 const SMALLEST_SAMPLE: f64 = 1e-15;
 
-/// Inputs are clamped to this many times full scale, so that a broken one does not ring for seconds.
+/// Inputs are clamped to this many times full scale, so that a broken one does not ring for
+/// seconds.
 const LARGEST_INPUT: f64 = 1e6;
 
 /// Samples of silence after which the filters are exactly at rest.
 const QUIET_SAMPLES: u32 = 64;
 
-/// How a channel is designed.
+/// Design of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelOptions {
     /// Which quantity comes in.
@@ -57,7 +58,7 @@ pub struct Channel {
     protection: Option<Protection>,
 }
 
-/// What the person wearing the device sets, at any time.
+/// Settings of the person wearing the device, at any time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelControl {
     /// Linear gain, 0–100.
@@ -118,7 +119,8 @@ impl Channel {
 }
 
 impl ChannelState {
-    /// Turns the summed contacts, m or m/s², into samples. Lengths: as far as the shorter slice reaches.
+    /// Turns the summed contacts, m or m/s², into samples. Lengths: as far as the shorter slice
+    /// reaches.
     pub fn run(&mut self, design: &Channel, control: &ChannelControl, sum_si: &[f64], out: &mut [f32]) {
         let wanted =
             if control.mute || !control.gain.is_finite() { 0.0 } else { control.gain.clamp(0.0, 100.0) };
@@ -150,7 +152,7 @@ impl ChannelState {
         }
     }
 
-    /// The same samples as the general loop where nothing ramps and nothing remembers.
+    /// Samples as the general loop gives them, where nothing ramps and nothing is held.
     fn run_plain(&mut self, scale: f64, gain: f64, sum_si: &[f64], out: &mut [f32]) {
         let sane = |x: f64| if x.is_finite() { x } else { 0.0 };
         for (&x, y) in sum_si.iter().zip(&mut *out) {

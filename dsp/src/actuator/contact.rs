@@ -1,4 +1,5 @@
-//! Output of one contact to its actuator: the motion of the pad, high-passed about its resting position.
+//! Output of one contact to its actuator: the motion of the pad, high-passed about its resting
+//! position.
 
 use crate::DesignError;
 use crate::butterworth::{Butterworth, State};
@@ -12,12 +13,13 @@ pub enum Quantity {
     Displacement,
     /// Acceleration, m/s².
     Acceleration,
-    /// Where friction drags the skin along the motion, m ([`crate::tangential`]): the place of the skin is handed in as the pad's.
+    /// Drag of the skin by friction along the motion, m ([`crate::tangential`]): the place of the
+    /// skin is handed in as the pad's.
     Tangential,
 }
 
-/// Time in which a contact that has ended fades, s (chosen: shorter than two 60 Hz events, and a fade this
-/// long has its energy below the band of touch).
+/// Time in which a contact that has ended fades, s (chosen: shorter than two 60 Hz events, and a
+/// fade this long has its energy below the band of touch).
 pub const RELEASE_S: f64 = 0.025;
 
 /// Design, shared by all contacts of one actuator.
@@ -33,7 +35,7 @@ pub struct ContactOutput {
 /// Memory of one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactOutputState {
-    /// Of the high-pass, where the design has one.
+    /// Cutoff of the high-pass, where the design has one.
     pub highpass: State,
     velocity_m_s: f64,
 }
@@ -55,19 +57,21 @@ impl ContactOutput {
         Ok(Self { quantity, highpass, sample_rate_hz: rate, through_skin: false, felt_force_exponent: 0.0 })
     }
 
-    /// Whether an acceleration is what the skin of a finger lets through ([`super::Skin`]), and not its point's.
+    /// True where an acceleration is what the skin of a finger lets through ([`super::Skin`]), and
+    /// not its point's.
     #[must_use]
     pub const fn through_skin(self, through_skin: bool) -> Self {
         Self { through_skin, ..self }
     }
 
-    /// Whether a contact of a probe that has skin goes through it.
+    /// Tests whether a contact of a probe that has skin goes through it.
     #[must_use]
     pub const fn minds_skin(&self) -> bool {
         self.through_skin && matches!(self.quantity, Quantity::Acceleration)
     }
 
-    /// How the displacement of a finger grows with what presses, (F / 1 N)ⁿ with n from 0 to 1; 0 is the pad's own motion.
+    /// Exponent n of growth of a finger's displacement with what presses, (F / 1 N)ⁿ with n from 0
+    /// to 1; 0 is the pad's own motion.
     ///
     /// # Errors
     /// When n is out of range.
@@ -76,7 +80,8 @@ impl ContactOutput {
         Ok(Self { felt_force_exponent, ..self })
     }
 
-    /// n of [`growing_with_force`](Self::growing_with_force) where a displacement is played, otherwise 0.
+    /// n of [`growing_with_force`](Self::growing_with_force) where a displacement is played,
+    /// otherwise 0.
     #[must_use]
     pub const fn felt_force_exponent(&self) -> f64 {
         if matches!(self.quantity, Quantity::Displacement) { self.felt_force_exponent } else { 0.0 }
@@ -96,8 +101,8 @@ impl ContactOutput {
 }
 
 impl ContactOutputState {
-    /// A contact that begins with the pad at `pad_m`: as if it had been there for ever, so the high-passed
-    /// output begins at zero.
+    /// A contact that begins with the pad at `pad_m`: as if it had been there for ever, so the
+    /// high-passed output begins at zero.
     #[must_use]
     pub fn begin(design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> Self {
         let settled = match design.quantity {
@@ -107,8 +112,9 @@ impl ContactOutputState {
         Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s }
     }
 
-    /// A contact that has been sliding already: its pad has risen at `slope_m_s` and bent by `bend_m_s2` for as
-    /// long as the high-pass remembers, so the high-passed output begins with what a stroke there has.
+    /// A contact that has been sliding already: its pad has risen at `slope_m_s` and bent by
+    /// `bend_m_s2` for as long as the high-pass remembers, so the high-passed output begins with
+    /// what a stroke there has.
     #[must_use]
     pub fn begin_sliding(
         design: &ContactOutput,
@@ -124,8 +130,8 @@ impl ContactOutputState {
         state
     }
 
-    /// One sample of the pad's motion → the output quantity, SI. Acceleration is the change of velocity over the
-    /// step that ends here.
+    /// One sample of the pad's motion → the output quantity, SI. Acceleration is the change of
+    /// velocity over the step that ends here.
     #[inline]
     pub fn tick(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let value = self.quantity(design, pad_m, pad_velocity_m_s);
@@ -135,8 +141,8 @@ impl ContactOutputState {
         }
     }
 
-    /// What is played of the pad's motion, before the high-pass: for a caller that runs the high-pass beside another
-    /// ([`butterworth::Two`](crate::butterworth::Two)).
+    /// Quantity of the pad's motion, before the high-pass: for a caller that runs the high-pass
+    /// beside another ([`butterworth::Two`](crate::butterworth::Two)).
     #[inline]
     pub fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let before_m_s = core::mem::replace(&mut self.velocity_m_s, pad_velocity_m_s);

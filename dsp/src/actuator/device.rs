@@ -3,16 +3,16 @@
 //! ```text
 //! felt displacement / drive = D₀/Q · ω₀² / (s² + ω₀/Q s + ω₀²)
 //! ```
-//! run exactly for a drive that is held over each step, as one complex number:
-//! z ← e^(λ step) z + b · drive, displacement = Im z, λ = −ω₀/2Q + i ω_d. Without drive |z| can only shrink, and
+//! run exactly for a drive that is held over each step, as one complex number: z ← e^(λ step) z + b
+//! · drive, displacement = Im z, λ = −ω₀/2Q + i ω_d. Without drive |z| can only shrink, and
 //! |displacement| ≤ |z| at every moment: the excursion limiter rests on these two facts.
 
 use super::Quantity;
 use crate::DesignError;
 use core::f64::consts::PI;
 
-/// An actuator as its data sheet or a measurement describes it. "Felt" means at the skin: the motion of
-/// the mass times its share of the total mass.
+/// An actuator as its data sheet or a measurement describes it. "Felt" means at the skin: the
+/// motion of the mass times its share of the total mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct DeviceProfile {
@@ -33,8 +33,8 @@ pub struct DeviceProfile {
 }
 
 impl DeviceProfile {
-    /// Linear resonant actuator. 170 Hz from the VG1040003D's class (secondary source); Q from a rise time of
-    /// 20 ms; 1.4 g peak on a 100 g block, coil time and rating assumed.
+    /// Linear resonant actuator. 170 Hz from the VG1040003D's class (secondary source); Q from a
+    /// rise time of 20 ms; 1.4 g peak on a 100 g block, coil time and rating assumed.
     pub const LRA_170: Self = Self {
         resonance_hz: 170.0,
         quality: 8.0,
@@ -44,8 +44,8 @@ impl DeviceProfile {
         rated_drive: SINE_RMS,
         thermal_time_s: 5.0,
     };
-    /// Voice coil of a console controller: f₀ 65 Hz, 20–250 Hz and a rise of about 20 ms are the published
-    /// haptic profile's; the rest is assumed.
+    /// Voice coil of a console controller: f₀ 65 Hz, 20–250 Hz and a rise of about 20 ms are the
+    /// published haptic profile's; the rest is assumed.
     pub const CONSOLE_VOICE_COIL: Self = Self {
         resonance_hz: 65.0,
         quality: 2.5,
@@ -55,7 +55,8 @@ impl DeviceProfile {
         rated_drive: SINE_RMS,
         thermal_time_s: 10.0,
     };
-    /// Recoil transducer of the Haptuator Mk II class: 90–1000 Hz (secondary source); the rest is assumed.
+    /// Recoil transducer of the Haptuator Mk II class: 90–1000 Hz (secondary source); the rest is
+    /// assumed.
     pub const HAPTUATOR: Self = Self {
         resonance_hz: 65.0,
         quality: 1.5,

@@ -4,11 +4,12 @@
 //! E(s) = (s² + ω₀/Q s + ω₀²) / (s² + √2 ω_h s + ω_h²) · s² / (s² + √2 ω_l s + ω_l²) · constant   displacement
 //! E(s) = (s² + ω₀/Q s + ω₀²) / (s² + √2 ω_l s + ω_l²) · ω_h² / (s² + √2 ω_h s + ω_h²) · constant  acceleration
 //! ```
-//! The zeros are the device's poles; what they cannot invert (a mass above resonance for displacement, a spring below it
-//! for acceleration) is left to two Butterworth pairs a factor [`EDGE`] outside the band, so the boost ends there.
-//! Minimum phase: stable by construction, no latency but the edges' own group delay. The gain is 1 at f₀:
-//! a sine of full scale at resonance drives fully, wherever the rest of the band needs more.
-//! Both fractions are mixes of the three outputs of a state-variable filter, in `f64`.
+//! The zeros are the device's poles; what they cannot invert (a mass above resonance for
+//! displacement, a spring below it for acceleration) is left to two Butterworth pairs a factor
+//! [`EDGE`] outside the band, so the boost ends there. Minimum phase: stable by construction, no
+//! latency but the edges' own group delay. The gain is 1 at f₀: a sine of full scale at resonance
+//! drives fully, wherever the rest of the band needs more. Both fractions are mixes of the three
+//! outputs of a state-variable filter, in `f64`.
 
 use super::{DeviceProfile, Quantity};
 use crate::DesignError;
@@ -78,7 +79,8 @@ impl Equaliser {
         Ok(out)
     }
 
-    /// Delay of the upper edge's corner pair, s: what remains when the device has undone the inverse.
+    /// Delay of the upper edge's corner pair, s: what remains when the device has undone the
+    /// inverse.
     #[must_use]
     pub fn group_delay_s(&self) -> f64 {
         self.group_delay_s

@@ -4,7 +4,8 @@ use super::Quantity;
 use super::device::{DeviceModel, DeviceProfile};
 use crate::DesignError;
 
-/// Time constant with which a limiter lets go, s (chosen: longer than a period of the lowest vibration).
+/// Time constant with which a limiter lets go, s (chosen: longer than a period of the lowest
+/// vibration).
 pub const RELEASE_TIME_S: f64 = 0.08;
 
 /// Squared amplitudes below this are rest.
@@ -12,11 +13,12 @@ const REST: f64 = 1e-60;
 
 /// Keeps a device inside its limits, sample by sample and without look-ahead.
 ///
-/// A smooth gain follows the envelope the *unlimited* drive would have caused (|z| of the device model, and
-/// the mean square of the drive); what it leaves over is cut by the largest factor 0–1 for which the modelled |z|, the mean
-/// square and the drive stay inside: such a factor always exists, because without drive all three can only
-/// fall. So the bounds are never exceeded, by construction. |z| counts speed as excursion to come: far
-/// above resonance the limit is reached earlier, by f/f₀.
+/// A smooth gain follows the envelope the *unlimited* drive would have caused (|z| of the device
+/// model, and the mean square of the drive); what it leaves over is cut by the largest factor 0–1
+/// for which the modelled |z|, the mean square and the drive stay inside: such a factor always
+/// exists, because without drive all three can only fall. So the bounds are never exceeded, by
+/// construction. |z| counts speed as excursion to come: far above resonance the limit is reached
+/// earlier, by f/f₀.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Protection {
     model: DeviceModel,
@@ -108,7 +110,8 @@ impl ProtectionState {
         safe
     }
 
-    /// The gain at which neither the envelope, nor the heat, nor the drive itself would pass its limit.
+    /// The gain at which neither the envelope, nor the heat, nor the drive itself would pass its
+    /// limit.
     fn smooth_gain(&mut self, design: &Protection, drive: f64) -> f64 {
         if self.unlimited_heat < REST {
             self.unlimited_heat = 0.0;
@@ -142,16 +145,17 @@ fn rested(z: [f64; 2]) -> [f64; 2] {
     if square(z) < REST { [0.0; 2] } else { z }
 }
 
-/// How long a [`PeakLimiter`] keeps its gain after a peak that came near the ceiling, s (chosen: half a period of 10 Hz, so
-/// that no audible tone sees the gain move between two of its own peaks).
+/// Hold of a [`PeakLimiter`]'s gain after a peak that came near the ceiling, s (chosen: half a
+/// period of 10 Hz, so that no audible tone sees the gain move between two of its own peaks).
 pub const HOLD_TIME_S: f64 = 0.05;
 
-/// Share of the ceiling from which a peak holds the gain: −3.1 dB. A tone near a quarter of the rate beats with it: for a while
-/// all its samples lie up to 3.01 dB below its peaks, and the gain must not rise meanwhile (no other ratio beats deeper).
+/// Share of the ceiling from which a peak holds the gain: −3.1 dB. A tone near a quarter of the
+/// rate beats with it: for a while all its samples lie up to 3.01 dB below its peaks, and the gain
+/// must not rise meanwhile (no other ratio beats deeper).
 const NEAR_CEILING: f32 = 0.7;
 
-/// Deepest gain: what is further above the ceiling, 80 dB, is a broken input and is cut, so that it does not silence the seconds
-/// after it.
+/// Deepest gain: what is further above the ceiling, 80 dB, is a broken input and is cut, so that it
+/// does not silence the seconds after it.
 const DEEPEST_GAIN: f32 = 1e-4;
 
 /// Peak limiter for an audio bus: no latency, never above the ceiling.
@@ -159,14 +163,16 @@ const DEEPEST_GAIN: f32 = 1e-4;
 /// ```text
 /// g ← c / |x|  where g |x| > c        otherwise, once no |g x| was above 0.7 c for 50 ms, g ← min(1, g e^(1/(τ rate)))
 /// ```
-/// A gain that rises between two peaks of one tone bends the tone: let go towards 1 with τ = 80 ms at once, it left a sine 20 dB
-/// over the ceiling at −32 dB of distortion. So it holds between peaks, and rises in decibels (109 dB a second): a sine's distortion
-/// is below −80 dB from its second period on, and below −60 dB from the first beat on where its samples beat with the rate
-/// (`tests/actuator.rs`). What goes on within 3.1 dB of the ceiling after something louder stays as much quieter.
+/// A gain that rises between two peaks of one tone bends the tone: let go towards 1 with τ = 80 ms
+/// at once, it left a sine 20 dB over the ceiling at −32 dB of distortion. So it holds between
+/// peaks, and rises in decibels (109 dB a second): a sine's distortion is below −80 dB from its
+/// second period on, and below −60 dB from the first beat on where its samples beat with the rate
+/// (`tests/actuator.rs`). What goes on within 3.1 dB of the ceiling after something louder stays as
+/// much quieter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakLimiter {
     ceiling: f32,
-    /// What the gain is multiplied by in a sample in which it rises.
+    /// Factor of the gain in a sample in which it rises.
     rise: f32,
     hold_samples: u32,
 }

@@ -15,9 +15,10 @@
 //! | gains, and all of it in order | [`Channel`] |
 //! | peaks of the audio bus | [`PeakLimiter`] |
 //!
-//! Source: Hasti §III-C streams the pad displacement to the actuator as it is, and §V names the missing
-//! compensation of the actuator's response as a limit. We add it. Nothing here looks ahead: latency 0, but
-//! for the equaliser's own group delay ([`Channel::group_delay_s`], 0.4 ms for the LRA).
+//! Source: Hasti §III-C streams the pad displacement to the actuator as it is, and §V names the
+//! missing compensation of the actuator's response as a limit. We add it. Nothing here looks ahead:
+//! latency 0, but for the equaliser's own group delay ([`Channel::group_delay_s`], 0.4 ms for the
+//! LRA).
 
 mod channel;
 mod contact;

@@ -1,4 +1,5 @@
-//! Skin of a finger: what an accelerometer on a fingertip has of the ground that its skin slides over.
+//! Skin of a finger: what an accelerometer on a fingertip has of the ground that its skin slides
+//! over.
 //!
 //! ```text
 //! ridge    ẏ = ω_r (x − y)                 ω_r = 2π 0.443 v / w     (a mean over the width w, at −3 dB)
@@ -13,10 +14,11 @@
 //! | k, b | stiffness and damping of a fingertip sheared under F | measured laws of fingertips, **secondary** |
 //! | m | [`TISSUE_MASS_KG`] | **assumed**: less than half of a pulp of 10 g |
 //!
-//! A point follows every asperity; a ridge lies on many and moves by their mean, and the tissue behind it follows only what is slow. Without them
-//! a fabric shakes a fingertip as v^0.1–0.6 with third octaves that rise by 55–67 dB from 25 Hz to 1 kHz; measured fingers give v^0.7–0.9 and
-//! 6–22 dB (`tests/finger_on_fabric.rs` holds ours). Slower than [`SLIDING_M_S`] a finger does not slide but land and lift, and the mean
-//! along the path ends.
+//! A point follows every asperity; a ridge lies on many and moves by their mean, and the tissue
+//! behind it follows only what is slow. Without them a fabric shakes a fingertip as v^0.1–0.6 with
+//! third octaves that rise by 55–67 dB from 25 Hz to 1 kHz; measured fingers give v^0.7–0.9 and
+//! 6–22 dB (`tests/finger_on_fabric.rs` holds ours). Slower than [`SLIDING_M_S`] a finger does not
+//! slide but land and lift, and the mean along the path ends.
 
 use core::f64::consts::PI;
 
@@ -34,10 +36,11 @@ const FORCE_N: (f64, f64) = (0.01, 100.0);
 const HALF_POWER: f64 = 0.443;
 /// Slowest slide, m/s.
 pub const SLIDING_M_S: f64 = 0.02;
-/// Where the ridge's low-pass stands at rest, Hz.
+/// Cutoff of the ridge's low-pass at rest, Hz.
 const AT_REST_HZ: f64 = 1000.0;
 
-/// Coefficients at one speed and force (trapezoidal, so that they may change from sample to sample).
+/// Coefficients at one speed and force (trapezoidal, so that they may change from sample to
+/// sample).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skin {
     /// Gain of the ridge's integrator over 1 + itself.
@@ -146,7 +149,8 @@ mod tests {
 
     #[test]
     fn it_is_what_scipy_s_bilinear_filters_give() {
-        // scipy.signal: lfilter of bilinear([1], [1/wr, 1]) and bilinear([b, k], [m, b, k]), corners pre-warped, impulse at 0.
+        // scipy.signal: lfilter of bilinear([1], [1/wr, 1]) and bilinear([b, k], [m, b, k]),
+        // corners pre-warped, impulse at 0.
         let skin = Skin::new(0.46e-3, 0.1, 1.0, RATE_HZ);
         let mut state = SkinState::default();
         let mut response = [0.0; 6];

@@ -8,10 +8,11 @@ use crate::simd::Vector;
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 /// Adding it rounds to 2⁻³². The lower half of its own bits is zero.
 const TO_FRACTION: f64 = 1_572_864.0; // 1.5 · 2²⁰
-/// What is added to the upper half of such a sum to leave the whole number that was rounded down.
+/// Addend for the upper half of such a sum that leaves the whole number that was rounded down.
 const FROM_HIGH: u32 = ((TO_FRACTION.to_bits() >> 32) as u32).wrapping_neg();
 
-/// Positions up to here, cells of the coarsest octave, become fixed point by one addition, whichever way their lattice is turned.
+/// Positions up to here, cells of the coarsest octave, become fixed point by one addition,
+/// whichever way their lattice is turned.
 pub(super) const NEAR: f64 = 360_000.0; // less than 2¹⁹ / √2
 
 /// N positions along one axis in fixed point, cells of the coarsest octave.
@@ -32,7 +33,7 @@ pub(super) fn cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V
     Cells { index: v.add_word(v.low_half(whole), borrow), fraction: v.low_half(fraction) }
 }
 
-/// The same within ± 2¹⁹: both halves of one sum.
+/// Sum within ± 2¹⁹: both halves of one.
 #[inline(always)]
 pub(super) fn near_cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V::Word> {
     let sum = v.add_double(u, v.splat_double(TO_FRACTION));
@@ -40,7 +41,7 @@ pub(super) fn near_cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Ce
 }
 
 impl<W: Copy> Cells<W> {
-    /// The same on both counts.
+    /// Sums on both counts.
     pub(super) fn at(place: W) -> Self {
         Self { index: place, fraction: place }
     }
@@ -78,7 +79,7 @@ impl<W: Copy> Cells<W> {
 /// [min x, min y, −max x, −max y].
 pub(super) type Bounds = [f64; 4];
 
-/// Where an octave's lattice begins, cells.
+/// Origin of an octave's lattice, cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Offset {
     index: u32,
@@ -96,8 +97,9 @@ impl Offset {
     }
 }
 
-/// The cell of an octave that the contact was last in: a slow octave stays in it for many samples, and for many blocks. One number each, which
-/// every vector repeats as it loads it: a short block neither lays them out nor gathers them.
+/// The cell of an octave that the contact was last in: a slow octave stays in it for many samples,
+/// and for many blocks. One number each, which every vector repeats as it loads it: a short block
+/// neither lays them out nor gathers them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct KnownCell {
     /// Positions within these are in it, however they were rounded.
@@ -114,8 +116,9 @@ impl KnownCell {
         v.all_reach(bounds, &self.bounds)
     }
 
-    /// Becomes the cell of an octave that a position in 2⁻³² cells of the coarsest one is in. Whether positions within these bounds are in
-    /// it: told by plain numbers, for which no vector has to wait until they are stored.
+    /// Becomes the cell of an octave that a position in 2⁻³² cells of the coarsest one is in.
+    /// Whether positions within these bounds are in it: told by plain numbers, for which no vector
+    /// has to wait until they are stored.
     #[cold]
     pub(super) fn follow(&mut self, octave: &Octave, position: [i64; 2], within: &Bounds) -> bool {
         let Octave { offset, key, index: i, .. } = *octave;
@@ -133,7 +136,8 @@ impl KnownCell {
     }
 }
 
-/// A lower bound in cells from one in 2⁻³² cells: the next position up that no rounding takes below.
+/// A lower bound in cells from one in 2⁻³² cells: the next position up that no rounding takes
+/// below.
 #[inline(always)]
 fn inner(bound: i64) -> f64 {
     let cells = (bound + 1) as f64 * (1.0 / 4_294_967_296.0);

@@ -2,7 +2,8 @@
 
 use crate::simd::Vector;
 
-/// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within 1e-6.
+/// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within
+/// 1e-6.
 pub(super) const OCTAVE_RATIO: [f32; 5] =
     [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
 
@@ -13,7 +14,7 @@ pub(super) const INVERSE_OCTAVE_RATIO: [f32; 5] =
 /// L(R): gain of the octave of 1.024 mm cells that makes the octave about 1 mm have an rms of 1.
 pub(super) const LEVEL: [f32; 5] = [6.141_755, -2.561_869_4, -0.443_945_3, 0.239_734_56, -0.097_434_45];
 
-/// What the finest living octave gains beyond 1 to stand in for the tails of all finer ones.
+/// Gain beyond 1 of the finest living octave, which stands in for the tails of all finer ones.
 const TAIL_BOOST: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_875_62];
 
 /// Σ cₖ xᵏ
@@ -40,14 +41,14 @@ pub(super) fn footprint_weight<const N: usize, V: Vector<N>>(v: V, samples_per_c
     v.mul(v.mul(s, s), v.sub(v.splat(3.0), v.mul(v.splat(2.0), s)))
 }
 
-/// What the roughness says about the gains.
+/// Gains that follow from the roughness.
 #[derive(Clone, Copy)]
 pub(super) struct Gains<F> {
     /// Gain of the finest octave for an rms of 1 in the octave about 1 mm.
     pub finest: F,
-    /// What the next coarser one has more.
+    /// Ratio of the next coarser one.
     pub coarser: F,
-    /// What the finest living octave gains beyond 1.
+    /// Gain beyond 1 of the finest living octave.
     pub tail_boost: F,
 }
 

@@ -13,8 +13,8 @@ use crate::simd::{Eight, Set, Sixteen, Vector};
 /// Positions are kept within ± this many metres, where fixed point keeps their order.
 const FARTHEST_M: f64 = 1e7;
 
-/// An octave is slow if its cells are so many times as long as the way of the samples side by side. In
-/// faster ones the samples are too often in different cells for a search to pay.
+/// An octave is slow if its cells are so many times as long as the way of the samples side by side.
+/// In faster ones the samples are too often in different cells for a search to pay.
 const SLOW: f32 = 2.5;
 
 /// Samples a cell at which an octave's weight is surely 0 everywhere, and 1, whatever the rounding.
@@ -31,7 +31,7 @@ struct Lattice<W> {
 /// Memory that is filled anew for every N samples.
 struct Room<const N: usize, V: Vector<N>> {
     lattices: [Lattice<V::Word>; ROTATIONS],
-    /// What is left of the finest octaves.
+    /// Share that is left of the finest octaves.
     fades: [V::Single; OCTAVES],
     /// Gains of the octaves where the roughness is not one for all.
     gains: [V::Single; OCTAVES],
@@ -49,7 +49,7 @@ impl<const N: usize, V: Vector<N>> Room<N, V> {
 /// N samples of a path in the form the octaves need, beside what is in their [`Room`].
 struct Lanes<const N: usize, V: Vector<N>> {
     v: V,
-    /// So many octaves, from the coarsest, have cells much longer than all samples together.
+    /// Number of octaves, from the coarsest, that have cells much longer than all samples together.
     slow: usize,
     samples_per_metre: V::Single,
     shortest_footprint_m: f32,
@@ -92,8 +92,8 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         }
     }
 
-    /// What becomes of the finest octaves: those from `alive` on are gone, those from `steady` on fade, or the finest stands in for finer
-    /// ones; coarser ones are whole.
+    /// Fate of the finest octaves: those from `alive` on are gone, those from `steady` on fade, or
+    /// the finest stands in for finer ones; coarser ones are whole.
     #[inline(always)]
     fn fades(
         &self,
@@ -126,7 +126,8 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         (alive, steady)
     }
 
-    /// Sums of all octaves, from the finest to the coarsest of each set of weights; every octave is worked out once for all sets.
+    /// Sums of all octaves, from the finest to the coarsest of each set of weights; every octave is
+    /// worked out once for all sets.
     #[inline(always)]
     fn sums<const W: usize>(
         &self,
@@ -178,8 +179,8 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         sums
     }
 
-    /// One octave at every sample. Where its cells are long, nothing is hashed while all samples are in the cell that was last found; the
-    /// bits are the same.
+    /// One octave at every sample. Where its cells are long, nothing is hashed while all samples
+    /// are in the cell that was last found; the bits are the same.
     #[inline(always)]
     fn octave(
         &self,
@@ -208,7 +209,8 @@ fn way_m<const N: usize>(position_m: &[[f64; 2]; N]) -> f32 {
     ((u - x).abs() + (v - y).abs()) as f32
 }
 
-/// How many octaves, from the coarsest, have cells so long that samples along this way are mostly in one.
+/// Number of octaves, from the coarsest, that have cells so long that samples along this way are
+/// mostly in one.
 #[inline(always)]
 fn slow_octaves(noise: &FractalNoise, way_m: f32) -> usize {
     let mut slow = OCTAVES;
@@ -234,8 +236,8 @@ fn within_reach<const N: usize, V: Vector<N>>(v: V, x: V::Double) -> V::Double {
     v.min_double(v.max_double(x, v.splat_double(-FARTHEST_M)), v.splat_double(FARTHEST_M))
 }
 
-/// [`add`] on a set of instructions: sixteen samples at a time where its vectors hold eight or more, so that what a known cell and an octave
-/// say is spread over the lanes once for two of them.
+/// [`add`] on a set of instructions: sixteen samples at a time where its vectors hold eight or
+/// more, so that what a known cell and an octave say is spread over the lanes once for two of them.
 #[inline(always)]
 pub(super) fn add_on<const W: usize, S: Set>(
     s: S,
@@ -314,7 +316,8 @@ impl<const N: usize> Left<N> {
     }
 }
 
-/// The values from `start` on, and after fewer than N the last of them again and again: spare lanes make no work of their own.
+/// The values from `start` on, and after fewer than N the last of them again and again: spare lanes
+/// make no work of their own.
 #[inline(always)]
 fn padded<T: Copy, const N: usize>(values: &[T], start: usize, none: T) -> [T; N] {
     let values = values.get(start..).unwrap_or_default();

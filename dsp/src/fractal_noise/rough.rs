@@ -1,13 +1,13 @@
-//! What the roughness of the samples says about the octaves. A plate has one roughness, and so have most samples that lie side by side on a
-//! map: then plain numbers say it for all of them, once.
+//! Roughness of samples, as octave gains. A plate has one roughness, and so have most samples that
+//! lie side by side on a map: then plain numbers say it for all of them, once.
 
 use super::gains::{Gains, gains, within_0_1};
 use super::{OCTAVES, OctaveWeights};
 use crate::simd::Vector;
 
-/// What the roughness of N samples says.
+/// Gains of N samples.
 pub(super) struct Rough<F> {
-    /// Whether one says it for all: then only the boost is told here.
+    /// True where one holds for all: then only the boost is given here.
     pub(super) even: bool,
     /// Within 0–1.
     pub(super) lanes: F,
@@ -34,7 +34,7 @@ impl<F: Copy> Rough<F> {
     }
 }
 
-/// What one roughness says, kept until it is another.
+/// Gains of one roughness, kept until it is another.
 pub(super) struct Even<const W: usize> {
     roughness: f32,
     tail_boost: f32,
@@ -53,7 +53,7 @@ impl<const W: usize> Even<W> {
         scales: [[0.0; OCTAVES]; W],
     };
 
-    /// Of another roughness.
+    /// Gains of another roughness.
     #[inline(always)]
     fn tell<const N: usize, V: Vector<N>>(&mut self, v: V, sets: &[&OctaveWeights; W], roughness: f32) {
         let lanes = v.splat(roughness);

@@ -1,4 +1,4 @@
-//! What each octave weighs: the surface's own law, and what a tip of some radius rides over.
+//! Weights of the octaves: the surface's own law, and what a tip of some radius rides over.
 //!
 //! ```text
 //! a(λ) = rms · g(R) · (λ / 1 mm)^((α−1)/2) · (1 + (λ/L)²)^(−α/4) · (1 + (λ_c/λ)^(2p))^(−1/2)
@@ -13,8 +13,9 @@
 //! | L | [`Relief::outer_scale_m`] | beyond it a surface is flat: every finished surface has such a roll-off |
 //! | r, λ_c | [`Relief::tip_radius_m`] | a sphere does not reach the ground of valleys sharper than itself; in front of λ_c in the right-hand equation stands a(λ) without the tip |
 //!
-//! The tip's term is the spectral equivalent of an exact dilation. It was fitted to spheres of 0.4, 1.6 and 5 mm that rode on this noise,
-//! R 0.1–1, 11 µm (`tests/independent/tip_on_noise.py`): the octaves from 4 mm to 0.06 mm within 2 dB.
+//! The tip's term is the spectral equivalent of an exact dilation. It was fitted to spheres of 0.4,
+//! 1.6 and 5 mm that rode on this noise, R 0.1–1, 11 µm (`tests/independent/tip_on_noise.py`): the
+//! octaves from 4 mm to 0.06 mm within 2 dB.
 
 use super::gains::{INVERSE_OCTAVE_RATIO, LEVEL, OCTAVE_RATIO};
 use super::{FractalNoise, OCTAVES, band_weight};
@@ -29,13 +30,13 @@ const TERMS: usize = 5;
 /// Curvature of the octave that a tip just follows, times its radius: fitted.
 const FOLLOWED_CURVATURE: f64 = 0.63;
 
-/// What is left of a rough ground below λ_c falls as λ to this power: arcs of the tip, meeting in cusps. Fitted.
+/// Power of λ with which a rough ground falls below λ_c: arcs of the tip, meeting in cusps. Fitted.
 const ARCS: f64 = 1.45;
 
 /// The wavelength at which the law is pinned, m.
 const PINNED_M: f64 = 1e-3;
 
-/// How rough a surface is, and for whom.
+/// Roughness of a surface, and the tip on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relief {
     /// Rms of the octave about 1 mm where R is 1, m.
@@ -66,7 +67,7 @@ pub struct OctaveWeights {
 }
 
 impl OctaveWeights {
-    /// The same level at 1 mm for every roughness, no outer scale, felt by a point: the bare law.
+    /// Bare law: one level at 1 mm for every roughness, no outer scale, felt by a point.
     #[must_use]
     pub fn pinned(rms_at_1mm_m: f64, longest_wavelength_m: f64) -> Self {
         let of =
@@ -74,7 +75,7 @@ impl OctaveWeights {
         Self::of(CELLS_M.map(of))
     }
 
-    /// Of a surface, for a tip.
+    /// Weights of a surface, for a tip.
     #[must_use]
     pub fn new(relief: &Relief) -> Self {
         let of = |cell_m| {
@@ -92,20 +93,21 @@ impl OctaveWeights {
 }
 
 impl OctaveWeights {
-    /// Of the octaves from one on, by their index.
+    /// Weights of the octaves from one on, by their index.
     #[must_use]
     pub fn from_octave(&self, octave: usize) -> Self {
         Self { of: self.of, coarsest: self.coarsest.max(octave.min(OCTAVES)) }
     }
 
-    /// Rms of the relief that lies beside the Catmull-Rom cubics through its samples, and which octaves have to be looked at between samples so
-    /// that the others miss no more than `left_m`.
+    /// Rms of the relief that lies beside the Catmull-Rom cubics through its samples, and which
+    /// octaves have to be looked at between samples so that the others miss no more than `left_m`.
     ///
     /// ```text
     /// e² = Σ (gᵢ κ(aᵢ/s))² · 0.093        κ(c) = 1.5/c³
     /// ```
-    /// s: `footprint_m`, the way between two samples; gᵢ: gain of the octave, faded as if that were `faded_m`. κ was measured on the noise
-    /// (within 50 % from 2 to 24 samples a cell); longer cells count for nothing.
+    /// s: `footprint_m`, the way between two samples; gᵢ: gain of the octave, faded as if that were
+    /// `faded_m`. κ was measured on the noise (within 50 % from 2 to 24 samples a cell); longer
+    /// cells count for nothing.
     #[must_use]
     pub fn missed(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2], left_m: f64) -> Missed {
         let r = roughness.clamp(0.0, 1.0);
@@ -140,12 +142,13 @@ impl OctaveWeights {
     }
 }
 
-/// What cubics through samples miss of a relief.
+/// Error of cubics through samples of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Missed {
     /// Rms, m.
     pub all_m: f64,
-    /// The coarsest octave that has to be looked at between samples, by its index; [`OCTAVES`] for none.
+    /// The coarsest octave that has to be looked at between samples, by its index; [`OCTAVES`] for
+    /// none.
     pub octave: usize,
 }
 
@@ -160,7 +163,7 @@ impl Relief {
             * self.followed(wavelength_m, roughness)
     }
 
-    /// What the tip follows of an octave, 0–1.
+    /// Share of an octave that the tip follows, 0–1.
     fn followed(&self, wavelength_m: f64, roughness: f64) -> f64 {
         let rising = 0.5 * (FractalNoise::alpha(roughness) - 1.0);
         let pinned_m = self.rms_at_1mm_m * growth(roughness);
@@ -244,7 +247,8 @@ mod tests {
         }
     }
 
-    // dB that a sphere takes off the octaves about 8 mm … 62.5 µm: a dilation in numpy, tests/independent/tip_on_noise.py.
+    // dB that a sphere takes off the octaves about 8 mm … 62.5 µm: a dilation in numpy,
+    // tests/independent/tip_on_noise.py.
     #[test]
     fn a_sphere_takes_off_what_its_dilation_takes_off() {
         let figures = [

@@ -13,8 +13,8 @@ pub(super) fn run(level: Level, seed: u32, points: &mut Points<'_>) -> usize {
     let len = points.x.len();
     match level.token() {
         Token::Portable(_) => 0,
-        // SAFETY: the token stands for AVX2 and FMA, and all slices of `Points` are equally long, so that whole vectors of points can be
-        // read and written.
+        // SAFETY: the token stands for AVX2 and FMA, and all slices of `Points` are equally long,
+        // so that whole vectors of points can be read and written.
         Token::Avx2(_) => unsafe {
             avx2::run(seed, points, len & !7);
             len & !7
@@ -39,8 +39,9 @@ pub(super) fn single(level: Level, seed: u32, [x, y, z]: [f64; 3]) -> Option<sup
 
 /// The kernel, written once over the vector operations of the module it is expanded in.
 ///
-/// Gradients have twice their length here, because that takes one byte of a float, and so has all that
-/// comes of them; the slopes of the blend have half of theirs. Halved in the end, it is the same bits.
+/// Gradients have twice their length here, because that takes one byte of a float, and so has all
+/// that comes of them; the slopes of the blend have half of theirs. Halved in the end, it is the
+/// same bits.
 macro_rules! kernel {
     ($feature:literal, $lanes:literal) => {
         /// Blend weight and half its slope, as `blend`.
@@ -222,7 +223,8 @@ mod avx2 {
         unsafe { _mm256_storeu_ps(to, value) }
     }
 
-    /// The highest byte of 2 and of −2 for each component of `EDGES`; all other bytes of theirs are 0.
+    /// The highest byte of 2 and of −2 for each component of `EDGES`; all other bytes of theirs are
+    /// 0.
     const BYTES: [[i8; 16]; 3] = {
         let mut bytes = [[0; 16]; 3];
         let mut edge = 0;
@@ -237,8 +239,8 @@ mod avx2 {
         bytes
     };
 
-    /// Twice `EDGES[index]`: the index is brought to the highest byte of a lane, where the shuffle reads
-    /// it; indices above 127, in the other bytes, give 0.
+    /// Twice `EDGES[index]`: the index is brought to the highest byte of a lane, where the shuffle
+    /// reads it; indices above 127, in the other bytes, give 0.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn gradient(lattice: Int) -> Gradient {

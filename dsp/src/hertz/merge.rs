@@ -2,9 +2,9 @@
 
 use super::HertzPulse;
 
-/// While the exciter touches, a further onset is no second impact: only what a harder one has more than
-/// the hardest so far is added, as a pulse of its own shape. One a contact; chatter within a contact time then
-/// sounds as its hardest hit, whatever its count.
+/// While the exciter touches, a further onset is no second impact: only what a harder one has more
+/// than the hardest so far is added, as a pulse of its own shape. One a contact; chatter within a
+/// contact time then sounds as its hardest hit, whatever its count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnsetMerge {
     /// Absolute end of the contact, in samples.
@@ -19,8 +19,8 @@ impl Default for OnsetMerge {
 }
 
 impl OnsetMerge {
-    /// What to deposit for `pulse`, which begins `onset_offset` of a step after `onset_sample`; `None` when it
-    /// is part of the contact before.
+    /// Pulse to deposit for `pulse`, which begins `onset_offset` of a step after `onset_sample`;
+    /// `None` when it is part of the contact before.
     #[inline]
     pub fn admit(
         &mut self,
@@ -40,8 +40,9 @@ impl OnsetMerge {
         if !(excess > 0.0 && excess.is_finite()) {
             return None;
         }
-        // It lasts as long as the harder one: a slow touch before it, which alone would last longer, leaves nothing behind. So one that just
-        // grazes may be there or not, and all that comes after sounds the same.
+        // It lasts as long as the harder one: a slow touch before it, which alone would last
+        // longer, leaves nothing behind. So one that just grazes may be there or not, and all that
+        // comes after sounds the same.
         *self = Self { end, held_n_s: pulse.impulse_n_s };
         Some(HertzPulse { impulse_n_s: excess, ..pulse })
     }

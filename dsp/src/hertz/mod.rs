@@ -1,4 +1,5 @@
-//! Hertz impacts: how long two bodies touch, how hard, and the pulse they leave in the impulse ring.
+//! Hertz impacts: how long two bodies touch, how hard, and the pulse they leave in the impulse
+//! ring.
 //!
 //! ```text
 //! m x'' = −k x^1.5      k = 4/3 E* √R      1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂
@@ -14,15 +15,17 @@
 //! | τ, J | [`HertzPulse`] |
 //! | p(u) | [`pulse_shape`], area 1 |
 //!
-//! Source: Hasti §III-D ("We use Hertz contact theory to determine the impact force profile"); the constants
-//! are our own integration of the equation.
+//! Source: Hasti §III-D ("We use Hertz contact theory to determine the impact force profile"); the
+//! constants are our own integration of the equation.
 //!
-//! What we changed: a pulse of 10–100 µs is shorter than a sample at 44.1 kHz, and sampling it at points
-//! loses up to 560 % of its impulse. We deposit it under a cubic B-spline ([`HertzPulse::deposit`]): its
-//! area and its onset within the sample are exact, and what folds back below 10 kHz stays under 1 % of the impulse for any
-//! contact time. The kernel's own response and its [`KERNEL_LATENCY`] are undone mode by mode when the bank
-//! is designed ([`crate::modal_bank::GroupOptions::impulse_kernel_compensation`]), so that a mode sounds in
-//! the very sample of the contact. A restitution e below 1 scales the impulse and leaves the shape elastic.
+//! What we changed: a pulse of 10–100 µs is shorter than a sample at 44.1 kHz, and sampling it at
+//! points loses up to 560 % of its impulse. We deposit it under a cubic B-spline
+//! ([`HertzPulse::deposit`]): its area and its onset within the sample are exact, and what folds
+//! back below 10 kHz stays under 1 % of the impulse for any contact time. The kernel's own response
+//! and its [`KERNEL_LATENCY`] are undone mode by mode when the bank is designed
+//! ([`crate::modal_bank::GroupOptions::impulse_kernel_compensation`]), so that a mode sounds in the
+//! very sample of the contact. A restitution e below 1 scales the impulse and leaves the shape
+//! elastic.
 
 mod merge;
 mod ring;
@@ -88,8 +91,8 @@ pub struct HertzContact {
 }
 
 impl HertzContact {
-    /// A sphere of material `a`, `radius_m` and `mass_kg` against a flat, heavy body of material `b`. For two
-    /// spheres 1/R and 1/m are the sums of theirs. The contact is elastic (e = 1).
+    /// A sphere of material `a`, `radius_m` and `mass_kg` against a flat, heavy body of material
+    /// `b`. For two spheres 1/R and 1/m are the sums of theirs. The contact is elastic (e = 1).
     ///
     /// # Errors
     /// Names the field that is out of range.
@@ -103,7 +106,7 @@ impl HertzContact {
         Ok(Self { effective_modulus_pa, radius_m, mass_kg, restitution: 1.0, time_at_1_m_s: time })
     }
 
-    /// The same contact with a coefficient of restitution.
+    /// Sets a coefficient of restitution.
     ///
     /// # Errors
     /// When it is not within 0 to 1.
@@ -150,7 +153,8 @@ impl HertzContact {
         shape::PEAK * self.impulse_n_s(speed_m_s) / self.contact_time_s(speed_m_s)
     }
 
-    /// The pulse of an impact at `speed_m_s`; a speed that is not above 0 and finite gives no impulse.
+    /// The pulse of an impact at `speed_m_s`; a speed that is not above 0 and finite gives no
+    /// impulse.
     #[inline]
     #[must_use]
     pub fn pulse(&self, speed_m_s: f64) -> HertzPulse {
@@ -164,12 +168,12 @@ impl HertzContact {
 pub struct HertzPulse {
     /// Area under the force, N·s.
     pub impulse_n_s: f64,
-    /// How long the bodies touch, s.
+    /// Contact time of the bodies, s.
     pub contact_time_s: f64,
 }
 
-/// v^(−1/5) to 1e-8 for speeds from [`SLOWEST_M_S`] on, in a third of the time of `pow`: a first guess from
-/// the exponent bits, then Newton's rule y ← y (6 − v y⁵)/5.
+/// v^(−1/5) to 1e-8 for speeds from [`SLOWEST_M_S`] on, in a third of the time of `pow`: a first
+/// guess from the exponent bits, then Newton's rule y ← y (6 − v y⁵)/5.
 #[inline]
 fn inverse_fifth_root(speed: f64) -> f64 {
     let v = if speed > SLOWEST_M_S { speed.min(1e9) } else { SLOWEST_M_S };
@@ -183,8 +187,9 @@ fn inverse_fifth_root(speed: f64) -> f64 {
     y
 }
 
-/// Modulus and angle of the ring's kernel at the complex frequency −`decay` + i `theta` (per sample):
-/// (sinh w / w)⁴ with w half of it. For an undamped mode this is sinc⁴(f/rate), a real number.
+/// Modulus and angle of the ring's kernel at the complex frequency −`decay` + i `theta` (per
+/// sample): (sinh w / w)⁴ with w half of it. For an undamped mode this is sinc⁴(f/rate), a real
+/// number.
 pub(crate) fn kernel_at(decay: f64, theta: f64) -> (f64, f64) {
     let (x, y) = (-0.5 * decay, 0.5 * theta);
     let (re, im) = (libm::sinh(x) * libm::cos(y), libm::cosh(x) * libm::sin(y));

@@ -3,7 +3,8 @@
 use super::shape::{Smoothed, fourfold, fourfold_after};
 use super::{HertzPulse, KERNEL_LATENCY};
 
-/// Shorter contacts are computed with this many samples of contact time: their spectrum is flat to 1e-6.
+/// Shorter contacts are computed with this many samples of contact time: their spectrum is flat to
+/// 1e-6.
 pub const SHORTEST_SAMPLES: f64 = 1e-3;
 
 /// Samples a pulse occupies beyond its contact time.
@@ -13,14 +14,14 @@ pub const KERNEL_SAMPLES: usize = 5;
 pub const SMALLEST_IMPULSE_N_S: f64 = 1e-25;
 
 impl HertzPulse {
-    /// Adds the pulse to `ring`, the impulses of the coming samples in N·s, at index sample & (length − 1);
-    /// the length is a power of two, 16 or more. The contact begins `onset_offset` (0–1) of a step after the
-    /// absolute sample `onset_sample`; sample k > `onset_sample` receives
+    /// Adds the pulse to `ring`, the impulses of the coming samples in N·s, at index sample &
+    /// (length − 1); the length is a power of two, 16 or more. The contact begins `onset_offset`
+    /// (0–1) of a step after the absolute sample `onset_sample`; sample k > `onset_sample` receives
     /// `J · (p ∗ β³)(k − 2 − onset)`, exact in area whatever the contact time.
     ///
     /// The last sample written is the contact time + 5 after the onset. A contact longer than the
-    /// ring's length − 6 samples is shortened to it (the impulse is kept). A pulse that holds no finite number
-    /// is ignored.
+    /// ring's length − 6 samples is shortened to it (the impulse is kept). A pulse that holds no
+    /// finite number is ignored.
     pub fn deposit(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
         let Some(length) = self.samples_in(ring.len(), sample_rate_hz).filter(|_| onset_offset.is_finite())
         else {
@@ -40,15 +41,16 @@ impl HertzPulse {
 }
 
 impl HertzPulse {
-    /// One past the last sample that the pulse reaches in a ring, if its contact begins in `onset_sample`.
+    /// One past the last sample that the pulse reaches in a ring, if its contact begins in
+    /// `onset_sample`.
     #[must_use]
     pub fn end_sample(&self, onset_sample: u64, sample_rate_hz: f64) -> u64 {
         // A saturating cast: an endless pulse is cut to the ring by the deposit itself.
         onset_sample + (self.contact_time_s * sample_rate_hz) as u64 + KERNEL_SAMPLES as u64 + 2
     }
 
-    /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no finite number, or a ring
-    /// shorter than 16.
+    /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no
+    /// finite number, or a ring shorter than 16.
     pub(crate) fn samples_in(&self, ring: usize, sample_rate_hz: f64) -> Option<f64> {
         debug_assert!(ring.is_power_of_two() && ring >= 16);
         let length = self.contact_time_s * sample_rate_hz;
@@ -95,7 +97,8 @@ fn short(write: &mut Writer<'_>, impulse: f64, length: f64, first: f64) {
     }
 }
 
-/// Pulses that hold the whole kernel: four samples at each end by differences, the inside by the polynomial.
+/// Pulses that hold the whole kernel: four samples at each end by differences, the inside by the
+/// polynomial.
 fn long(write: &mut Writer<'_>, impulse: f64, length: f64, first: f64) {
     let step = 1.0 / length;
     let (scale, inside) = (impulse * length * length * length, impulse * step);
@@ -115,25 +118,27 @@ fn long(write: &mut Writer<'_>, impulse: f64, length: f64, first: f64) {
     }
 }
 
-/// Fourth differences at v, v + 1, v + 2, v + 3 for v in 0..=1: before the onset the integral is zero.
+/// Fourth differences at v, v + 1, v + 2, v + 3 for v in 0..=1: before the onset the integral is
+/// zero.
 #[inline]
 fn edge(v: f64, step: f64) -> [f64; 4] {
     let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0].map(|i| fourfold((v + i) * step));
     [a, b - 4.0 * a, c - 4.0 * b + 6.0 * a, d - 4.0 * c + 6.0 * b - 4.0 * a]
 }
 
-/// What a mean force over one step still needs to have passed the kernel sinc⁴: sinc³ as a symmetric filter
-/// of five taps about [`KERNEL_LATENCY`], equal to it up to θ⁴ (0.04 dB off at 10 kHz and 44.1 kHz, 0.07 dB at
-/// a quarter of any rate). The outer two taps undo the droop of the mean itself.
+/// Response that a mean force over one step still needs to have passed the kernel sinc⁴: sinc³ as a
+/// symmetric filter of five taps about [`KERNEL_LATENCY`], equal to it up to θ⁴ (0.04 dB off at 10
+/// kHz and 44.1 kHz, 0.07 dB at a quarter of any rate). The outer two taps undo the droop of the
+/// mean itself.
 pub const FORCE_TAPS: [f64; FORCE_HISTORY + 1] =
     [-7.0 / 1920.0, 67.0 / 480.0, 233.0 / 320.0, 67.0 / 480.0, -7.0 / 1920.0];
 
 /// Samples of force that [`spread_force`] looks back.
 pub const FORCE_HISTORY: usize = 2 * KERNEL_LATENCY;
 
-/// Adds a sampled force to the ring: entry n of `impulses_n_s` is the mean force over a step × the step, of
-/// the absolute sample `first_sample` + n, and reaches the ring through `FORCE_TAPS`, at the same
-/// latency as a pulse, so one compensated bank serves both.
+/// Adds a sampled force to the ring: entry n of `impulses_n_s` is the mean force over a step × the
+/// step, of the absolute sample `first_sample` + n, and reaches the ring through `FORCE_TAPS`, at
+/// the same latency as a pulse, so one compensated bank serves both.
 ///
 /// Cells are added to sample by sample, so any split into calls gives the same bits.
 /// The block must be at least 4 samples shorter than the ring.
@@ -149,9 +154,9 @@ pub fn deposit_force(ring: &mut [f64], first_sample: u64, impulses_n_s: &[f64]) 
     }
 }
 
-/// What [`deposit_force`] would leave in the ring, sample by sample: adds to `out[n]` the force impulses
-/// up to it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample. Lengths: as far
-/// as the shorter slice reaches.
+/// Contents that [`deposit_force`] would leave in the ring, sample by sample: adds to `out[n]` the
+/// force impulses up to it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample.
+/// Lengths: as far as the shorter slice reaches.
 pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
     let [outer, inner, middle, ..] = FORCE_TAPS;
     for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
@@ -161,7 +166,7 @@ pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
     }
 }
 
-/// What [`spread_force`] adds to nothing.
+/// Contents that [`spread_force`] adds to nothing.
 pub fn spread_force_alone(impulses_n_s: &[f64], out: &mut [f64]) {
     let [outer, inner, middle, ..] = FORCE_TAPS;
     for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
@@ -171,8 +176,8 @@ pub fn spread_force_alone(impulses_n_s: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Reads the impulses of `out.len()` samples from `first_sample` on and clears them for the ring's next
-/// turn. What is below [`SMALLEST_IMPULSE_N_S`] or not finite is read as zero.
+/// Reads the impulses of `out.len()` samples from `first_sample` on and clears them for the ring's
+/// next turn. What is below [`SMALLEST_IMPULSE_N_S`] or not finite is read as zero.
 pub fn take(ring: &mut [f64], first_sample: u64, out: &mut [f32]) {
     debug_assert!(ring.len().is_power_of_two() && out.len() <= ring.len());
     let mask = ring.len().wrapping_sub(1);

@@ -1,7 +1,8 @@
 //! Shape of the elastic Hertz pulse as a polynomial, and that polynomial under the cubic kernel.
 
 /// Coefficients of w¹ … w⁵ in p(u) = Σ c w^j, w = 4u(1 − u), area 1; least squares against the
-/// integrated equation (`tests/independent/hertz_pulse.py`): 3e-4 off in L2, 8.1e-4 of the peak at most.
+/// integrated equation (`tests/independent/hertz_pulse.py`): 3e-4 off in L2, 8.1e-4 of the peak at
+/// most.
 const C: [f64; 5] = [0.191_499_142_6, 2.086_713_228_2, -1.531_633_332_1, 1.514_399_229_6, -0.421_699_986_2];
 
 /// Peak force · contact time / impulse of the elastic pulse.
@@ -86,7 +87,8 @@ const VARIANCE: f64 = {
 };
 
 /// κ_j 4^j (2i)! / (2i − 2j)! CENTRED[i], stored at [j][i − j]: the even derivatives that the cubic
-/// kernel adds to a polynomial, (sinh(s/2)/(s/2))⁴ = Σ κ_j s^(2j), κ_j = (2 · 4^(j+2) − 8) / (2j + 4)!.
+/// kernel adds to a polynomial, (sinh(s/2)/(s/2))⁴ = Σ κ_j s^(2j), κ_j = (2 · 4^(j+2) − 8) / (2j +
+/// 4)!.
 const SMOOTHED: [[f64; 6]; 6] = {
     let mut out = [[0.0; 6]; 6];
     let (mut j, mut four_to_j) = (0, 1.0);

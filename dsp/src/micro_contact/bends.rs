@@ -1,15 +1,19 @@
-//! What a profile does between two samples beside the cubic through them, where it is known midway too, or at every quarter.
+//! Bends of a profile between two samples beside the cubic through them, where it is known midway
+//! too, or at every quarter.
 //!
 //! ```text
 //! s(0) = 4/3 (m₊ − m₋) − 1/6 (h₊ − h₋)        bend = quartic(h₀, h₁, s(0), s(1), m) − cubic(h₀, h₁, (h₊ − h₋)/2 …)
 //! ```
-//! h are heights at samples and m those midway between. Slopes of differences over half a sample and the height midway make the profile
-//! exact to the fourth degree, where a Catmull-Rom cubic is to the second: gradient noise that passes within four samples is missed by a
-//! twenty-fifth of what the cubic misses. Known at the quarters, each half is such a quartic over half the way: a three-hundredth. More
-//! differences bring little: the noise bends as it likes from cell to cell. All terms are differences, and they add: of a sum of reliefs
-//! only those that need it have to be looked at between samples.
+//! h are heights at samples and m those midway between. Slopes of differences over half a sample
+//! and the height midway make the profile exact to the fourth degree, where a Catmull-Rom cubic is
+//! to the second: gradient noise that passes within four samples is missed by a twenty-fifth of
+//! what the cubic misses. Known at the quarters, each half is such a quartic over half the way: a
+//! three-hundredth. More differences bring little: the noise bends as it likes from cell to cell.
+//! All terms are differences, and they add: of a sum of reliefs only those that need it have to be
+//! looked at between samples.
 //!
-//! Four samples are worked out side by side, product and sum apart: the same bits on every set of instructions and in any blocks.
+//! Four samples are worked out side by side, product and sum apart: the same bits on every set of
+//! instructions and in any blocks.
 
 use super::guard::MAX_HEIGHT_M;
 use crate::simd::{Level, Set, at_level};
@@ -19,7 +23,7 @@ use fearless_simd::prelude::*;
 /// c₁ … c₄ of the polynomial over a sample beyond the cubic's, m.
 pub type Bend = [f64; 4];
 
-/// What is known of the ground between samples; entry n belongs to the sample that ends at height n − 1.
+/// Ground between samples; entry n belongs to the sample that ends at height n − 1.
 #[derive(Debug, Clone, Copy)]
 pub enum GroundBetween<'a> {
     /// Nothing: it is the cubic.
@@ -47,7 +51,7 @@ impl<'a> GroundBetween<'a> {
         }
     }
 
-    /// Whether so many samples of it are known, none of them beyond what a height may be.
+    /// Tests whether so many samples of it are known, none of them beyond what a height may be.
     pub(super) fn is_sound(self, count: usize) -> bool {
         match self {
             Self::AtSamples => true,
@@ -57,7 +61,7 @@ impl<'a> GroundBetween<'a> {
     }
 }
 
-/// Whether all of them can be.
+/// Tests whether all of them can be.
 #[inline(always)]
 pub(super) fn are_believed(bends: &[Bend]) -> bool {
     bends.as_flattened().iter().fold(true, |good, c| good & (c.abs() <= MAX_HEIGHT_M))
@@ -74,7 +78,7 @@ const WIDE: usize = 4;
 struct Row([f64; KNOWN + CHUNK + WIDE]);
 
 impl Row {
-    /// So many old ones, and the next of a stretch; the last old ones become those of the stretch.
+    /// Values of before, and the next of a stretch; the last old ones become those of the stretch.
     #[inline(always)]
     fn new<const N: usize>(old: &mut [f64; N], new: &[f64]) -> Self {
         let mut row = [0.0; KNOWN + CHUNK + WIDE];
@@ -98,15 +102,16 @@ pub struct Bends {
     at_m: [f64; KNOWN],
     /// Midway to the last two, m.
     midway_m: [f64; 2],
-    /// In the first half of the way to the last of them, and in the second half of the way to the last two, m.
+    /// In the first half of the way to the last of them, and in the second half of the way to the
+    /// last two, m.
     first_m: [f64; 1],
     second_m: [f64; 2],
     known: usize,
 }
 
 impl Bends {
-    /// Takes heights at samples and midway from the sample before each; the bends that end at the sample before each, zero where too little is
-    /// known yet. All slices are equally long.
+    /// Takes heights at samples and midway from the sample before each; the bends that end at the
+    /// sample before each, zero where too little is known yet. All slices are equally long.
     pub fn midway(&mut self, level: Level, at_m: &[f64], midway_m: &[f64], bends: &mut [Bend]) {
         let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(bends.chunks_mut(CHUNK));
         for ((at_m, midway_m), bends) in all {
@@ -123,7 +128,8 @@ impl Bends {
         }
     }
 
-    /// The same with heights at the quarters: one in the first half of the way from the sample before, one in the second.
+    /// Bends with heights at the quarters: one in the first half of the way from the sample before,
+    /// one in the second.
     pub fn quarters(
         &mut self,
         level: Level,
@@ -158,13 +164,13 @@ impl Bends {
         self.known += unknown;
     }
 
-    /// What comes next has nothing to do with what was.
+    /// Breaks the chain: the next heights have nothing to do with those of before.
     pub fn forget(&mut self) {
         self.known = 0;
     }
 }
 
-/// What is no bend.
+/// Flat bend.
 trait Flat {
     const NONE: Self;
 }
@@ -185,7 +191,8 @@ fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     let (h0, h1, h2, h3) = (at.at(s, n), at.at(s, n + 1), at.at(s, n + 2), at.at(s, n + 3));
     let (m0, m1, m2) = (mid.at(s, n), mid.at(s, n + 1), mid.at(s, n + 2));
     let (first, last) = (h2 - h0, h3 - h1);
-    // Slopes at both ends beyond the cubic's, and the height midway beyond that of the cubic with the new slopes.
+    // Slopes at both ends beyond the cubic's, and the height midway beyond that of the cubic with
+    // the new slopes.
     let begin = (four * (m1 - m0) - two * first) * third;
     let end = (four * (m2 - m1) - two * last) * third;
     let slopes = (half * first + begin) - (half * last + end);
@@ -193,7 +200,7 @@ fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     [begin, middle - (two * begin + end), (begin + end) - two * middle, middle]
 }
 
-/// The same in halves.
+/// Bends in halves.
 #[inline(always)]
 fn quarters_of<S: Set>(
     s: S,
@@ -224,13 +231,15 @@ fn quarters_of<S: Set>(
 
 // Not closures: those take no instructions of their set, and each product would be a call.
 
-/// The slope a half sample, from the heights a quarter before and after and the rise from a half before to a half after.
+/// The slope a half sample, from the heights a quarter before and after and the rise from a half
+/// before to a half after.
 #[inline(always)]
 fn slope<S: Set>(s: S, [low, high]: [f64x4<S>; 2], rise: f64x4<S>) -> f64x4<S> {
     (f64x4::splat(s, 8.0) * (high - low) - rise) * f64x4::splat(s, 1.0 / 6.0)
 }
 
-/// The quartic of a half sample, in coefficients a whole sample, from its rise, the slopes at its ends and its height midway.
+/// The quartic of a half sample, in coefficients a whole sample, from its rise, the slopes at its
+/// ends and its height midway.
 #[inline(always)]
 fn quartic<S: Set>(s: S, rise: f64x4<S>, [begin, end]: [f64x4<S>; 2], middle: f64x4<S>) -> [f64x4<S>; 4] {
     let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };

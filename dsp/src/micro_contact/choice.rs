@@ -3,9 +3,9 @@
 //! The rule looks at ω_c·h, the phase (radians) that the pressed pad turns through in one sample.
 //! Semi-implicit Euler stays linearly stable to 2 but gains energy far below that: an undamped
 //! bounce returns up to 1.022 of its speed at 0.5 and 1.25 at 1.5. So it runs plain to 0.5, in
-//! sub-steps to 1.5, and beyond that the energy-conserving scheme runs in its place. The exact scheme
-//! locates its events; it is replaced above a contact stiffness of 5e6 N/m, or above ω_c·h = 5,
-//! where its contact maps would need so many sub-steps that it is no longer worth its price.
+//! sub-steps to 1.5, and beyond that the energy-conserving scheme runs in its place. The exact
+//! scheme locates its events; it is replaced above a contact stiffness of 5e6 N/m, or above ω_c·h =
+//! 5, where its contact maps would need so many sub-steps that it is no longer worth its price.
 
 use super::Probe;
 use core::fmt;
@@ -21,7 +21,7 @@ pub const EXACT_MAX_STIFFNESS_N_M: f64 = 5e6;
 /// Most sub-steps a sample.
 const MAX_SUBSTEPS: usize = 16;
 
-/// How the equations of motion are integrated.
+/// Integrators of the equations of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Integrator {
@@ -64,12 +64,12 @@ impl Integrator {
     }
 }
 
-/// What the builder decided and why; prints as one sentence.
+/// Decision of the builder and its reason; prints as one sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// What was asked for.
+    /// Integrator that was asked for.
     pub wanted: Integrator,
-    /// What runs.
+    /// Integrator that runs.
     pub used: Integrator,
     /// Steps a sample.
     pub substeps: usize,

@@ -47,7 +47,7 @@ impl EnergyConserving {
         Self { free, half_stiffness_n_m, pressed_stiffness_n_m, ratio, rate_hz: 1.0 / step_s }
     }
 
-    /// The same probe on another contact.
+    /// Probe on another contact.
     pub fn set_stiffness(&mut self, contact_stiffness_n_m: f64) {
         self.half_stiffness_n_m = 0.5 * contact_stiffness_n_m;
         self.ratio = self.free.push[0] * self.half_stiffness_n_m;

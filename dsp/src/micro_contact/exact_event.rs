@@ -1,18 +1,19 @@
 //! Exact regime maps with located events.
 //!
-//! A sample whose two ends lie in one regime costs one map. Where its ground bends a pad can land and leave, or leave and land, within it:
-//! it is asked midway too, and at the quarters where those are known (that alone is worth 4–20 dB on a hopping pad, each time). Otherwise
-//! the sample is walked in a
-//! binary tree: a piece that ends in the other regime is halved, down to a tick; the tick in which
-//! skin and surface meet or part is taken whole, and the force it had too much or too little, k_m·g
-//! with g a parabola over the part ρ of the tick after the event, is given back as its integrals
-//! Δv = (k_m/m_s) ρ (4g − ġρ)/6 and Δx = (k_m/m_s) ρ² (3g − ġρ)/12 (g, ġ at the end of the tick): an
-//! undamped finger bouncing for 10 s gains less than 1e-6 of its energy to 5e6 N/m. No exponential is
-//! computed at run time; every node of the tree is visited at most once, so a sample
-//! costs at most 2·64 − 1 = 127 maps.
+//! A sample whose two ends lie in one regime costs one map. Where its ground bends a pad can land
+//! and leave, or leave and land, within it: it is asked midway too, and at the quarters where those
+//! are known (that alone is worth 4–20 dB on a hopping pad, each time). Otherwise the sample is
+//! walked in a binary tree: a piece that ends in the other regime is halved, down to a tick; the
+//! tick in which skin and surface meet or part is taken whole, and the force it had too much or too
+//! little, k_m·g with g a parabola over the part ρ of the tick after the event, is given back as
+//! its integrals Δv = (k_m/m_s) ρ (4g − ġρ)/6 and Δx = (k_m/m_s) ρ² (3g − ġρ)/12 (g, ġ at the end
+//! of the tick): an undamped finger bouncing for 10 s gains less than 1e-6 of its energy to 5e6
+//! N/m. No exponential is computed at run time; every node of the tree is visited at most once, so
+//! a sample costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
-//! latency, and what is known to bend beside it ([`GroundBetween`]); the force is the mean of both ends.
+//! latency, and what is known to bend beside it ([`GroundBetween`]); the force is the mean of both
+//! ends.
 
 use super::bends::{Bend, GroundBetween};
 use super::flow::{MAX_LEVEL, Regime};
@@ -27,8 +28,9 @@ const TICK_PHASE: f64 = 0.07;
 /// Longest pressed map, radians: a longer one could leave and come back unseen.
 const PRESSED_PHASE: f64 = 1.0;
 
-/// Kinds of [`GroundBetween`], for what is compiled for each. Ground that bends can meet a pad and leave it within a sample: it is looked
-/// at wherever it is known, in pieces of 2⁻¹ of a sample or of 2⁻².
+/// Kinds of [`GroundBetween`], for what is compiled for each. Ground that bends can meet a pad and
+/// leave it within a sample: it is looked at wherever it is known, in pieces of 2⁻¹ of a sample or
+/// of 2⁻².
 pub(super) const AT_SAMPLES: u8 = 0;
 pub(super) const MIDWAY: u8 = 1;
 pub(super) const QUARTERS: u8 = 2;
@@ -59,7 +61,7 @@ pub(super) struct ExactEvent {
     pub(super) mass_rate: [f64; 2],
 }
 
-/// What one step came to.
+/// Result of one step.
 pub(super) struct Step {
     pub(super) y: [f64; 4],
     pub(super) touched: bool,
@@ -69,7 +71,7 @@ pub(super) struct Step {
     maps: u32,
 }
 
-/// Where skin and surface meet or part.
+/// Moment at which skin and surface meet or part.
 struct Event {
     /// Place in its tick, 0…1.
     at: f64,
@@ -106,7 +108,8 @@ impl ExactEvent {
             softer.stiffness_per_mass + share * (harder.stiffness_per_mass - softer.stiffness_per_mass);
     }
 
-    /// Runs one clean block; row n describes input n − 1, and so does what is known of the ground: it ends at that input.
+    /// Runs one clean block; row n describes input n − 1, and so does what is known of the ground:
+    /// it ends at that input.
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
@@ -125,7 +128,7 @@ impl ExactEvent {
         }
     }
 
-    /// The same on one kind of ground: a bend a sample, or two.
+    /// Steps on one kind of ground: a bend a sample, or two.
     #[inline(always)]
     fn run_on<Q: Quad, const KIND: u8>(
         &self,
@@ -266,7 +269,8 @@ impl ExactEvent {
         Step { y, touched, onset, maps }
     }
 
-    /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at its end.
+    /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at
+    /// its end.
     #[inline(always)]
     fn split<Q: Quad>(
         &self,
@@ -276,12 +280,14 @@ impl ExactEvent {
         slope_m_s: f64,
         tick_s: f64,
     ) -> Event {
-        // Penetration at the end, its rate and its bend, with the sign turned so that it ends positive.
+        // Penetration at the end, its rate and its bend, with the sign turned so that it ends
+        // positive.
         let sign = if next[0] < 0.0 { 1.0 } else { -1.0 };
         let (past, past_before) = (-sign * next[0], -sign * before);
         let rate = sign * (slope_m_s - next[2]);
         let bend = 2.0 * (past_before - past + rate * tick_s) / (tick_s * tick_s);
-        // Time from the event to the end: the parabola's root in the tick. It ends positive and begins negative, so there is one.
+        // Time from the event to the end: the parabola's root in the tick. It ends positive and
+        // begins negative, so there is one.
         let falls = quad.root(at_least_zero(rate * rate - 2.0 * bend * past));
         let rest_s = (2.0 * past / (rate + falls).max(f64::MIN_POSITIVE)).clamp(0.0, tick_s);
         let kick = rest_s * (4.0 * past - rate * rest_s) * (1.0 / 6.0) * self.stiffness_per_mass;
@@ -289,7 +295,8 @@ impl ExactEvent {
         next[0] += shift;
         next[1] += shift;
         next[2] += kick;
-        // The speed at the event itself: a mean over the tick would jump from tick to tick, by 4 % where the ground rises steeply.
+        // The speed at the event itself: a mean over the tick would jump from tick to tick, by 4 %
+        // where the ground rises steeply.
         Event { at: 1.0 - rest_s / tick_s, closing_m_s: falls }
     }
 }
@@ -334,7 +341,8 @@ mod tests {
         Profile { c, later: None, least: 0 }
     }
 
-    /// Ground that rises as c t² meets a pad at rest g above it with 2 √(c g), wherever the ticks lie.
+    /// Ground that rises as c t² meets a pad at rest g above it with 2 √(c g), wherever the ticks
+    /// lie.
     #[test]
     fn a_collision_is_as_fast_as_the_ground_is_at_that_instant_and_not_in_the_mean_of_its_tick() {
         let step_s = 1.0 / 44.1e3;

@@ -1,10 +1,10 @@
 //! Exact maps of the two linear regimes, free and pressed, over a sample and its binary fractions.
 //!
-//! The state is y = (d, p, v_s, v_f): gap d = x_s − x_m (negative when pressed), pad stretch
-//! p = x_s − x_f, velocities of skin and finger. Over one sample the profile is a polynomial
-//! x_m(τ) = x₀ + c₁τ + c₂τ² + c₃τ³ + c₄τ⁴, τ from 0 to 1, and the normal force F and an optional push
-//! f on the skin are constant. In the augmented vector (y, c₁, c₂, c₃, F, f, c₄) both regimes are
-//! dz/dτ = G z, so that z(τ) = e^{Gτ} z. Heights enter only as differences: a contact 4 mm up (or a
+//! The state is y = (d, p, v_s, v_f): gap d = x_s − x_m (negative when pressed), pad stretch p =
+//! x_s − x_f, velocities of skin and finger. Over one sample the profile is a polynomial x_m(τ) =
+//! x₀ + c₁τ + c₂τ² + c₃τ³ + c₄τ⁴, τ from 0 to 1, and the normal force F and an optional push f on
+//! the skin are constant. In the augmented vector (y, c₁, c₂, c₃, F, f, c₄) both regimes are dz/dτ
+//! = G z, so that z(τ) = e^{Gτ} z. Heights enter only as differences: a contact 4 mm up (or a
 //! metre) is as exact as one at zero.
 //!
 //! E(τ) = e^{Gτ} − 1 is summed by Taylor at a step short enough and doubled by E(2τ) = 2E + E²: the
@@ -36,7 +36,7 @@ impl Map {
         self.apply_with(y, y.load(force).times_plus(y.splat(force_n), inputs))
     }
 
-    /// The same for a profile whose c₄ is zero.
+    /// Flow for a profile whose c₄ is zero.
     #[inline(always)]
     pub fn apply_cubic<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
         let inputs = self.cubic(y, c);
@@ -51,7 +51,7 @@ impl Map {
         y.load(twist).times_plus(y.splat(c[2]), inputs)
     }
 
-    /// The same for a straight profile: it rises by `rise_m` within the sample.
+    /// Flow for a straight profile: it rises by `rise_m` within the sample.
     #[inline(always)]
     pub fn apply_straight<Q: Quad>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
         let inputs = y.load(&self.columns[4]).mul(y.splat(rise_m));
@@ -103,8 +103,8 @@ impl Regime {
 impl Regime {
     /// The mean of two regimes, weighed.
     ///
-    /// `rest_m_n` is where (d, p) rests under 1 N. The mean of two maps rests elsewhere by a few picometres; its force column is made to
-    /// fit, so that a pressed finger stays where it is.
+    /// `rest_m_n` is where (d, p) rests under 1 N. The mean of two maps rests elsewhere by a few
+    /// picometres; its force column is made to fit, so that a pressed finger stays where it is.
     pub fn become_between(&mut self, a: &Self, b: &Self, share: f64, rest_m_n: [f64; 2]) {
         for (own, (a, b)) in self.maps.iter_mut().zip(a.maps.iter().zip(&b.maps)) {
             for (own, (a, b)) in own.columns.iter_mut().zip(a.columns.iter().zip(&b.columns)) {
@@ -269,7 +269,8 @@ mod tests {
             let regime = Regime::new(&Probe::default(), stiffness, STEP_S);
             for level in 1..=MAX_LEVEL {
                 let (y, c) = ([1e-5, -2e-5, 0.03, -0.04], [3e-6, -2e-6, 1e-6, -4e-6]);
-                // A level-k map takes its polynomial over a whole sample and covers the first 2⁻ᵏ of it.
+                // A level-k map takes its polynomial over a whole sample and covers the first 2⁻ᵏ
+                // of it.
                 let t = libm::exp2(-(level as f64));
                 let half = apply(&regime.maps[level], y, c, 0.5);
                 let later = at_end(c, t);

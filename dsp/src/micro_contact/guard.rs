@@ -17,8 +17,8 @@ pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 pub(super) const GRID: usize = 64;
 /// Gap beyond which the contact has lost its surface, m.
 pub(super) const MAX_GAP_M: f64 = 0.1;
-/// Penetration beyond which the surface has swallowed the contact, m, on top of [`PRESSED_OVERSHOOT`] times what the
-/// pressing force explains.
+/// Penetration beyond which the surface has swallowed the contact, m, on top of
+/// [`PRESSED_OVERSHOOT`] times what the pressing force explains.
 pub(super) const MAX_PENETRATION_M: f64 = 0.02;
 /// A force that sets in at once presses a spring in to twice its static depth.
 const PRESSED_OVERSHOOT: f64 = 2.0;
@@ -132,8 +132,9 @@ pub(super) fn start_or_zero(value: f64, good: bool, resets: &mut u32) -> f64 {
     0.0
 }
 
-/// Called when the gap is outside −[`MAX_PENETRATION_M`] … leash: pulls the leash, leaves alone what the pressing force
-/// explains, or puts a lost contact back at rest on the surface. Returns whether it was lost.
+/// Called when the gap is outside −[`MAX_PENETRATION_M`] … leash: pulls the leash, leaves alone
+/// what the pressing force explains, or puts a lost contact back at rest on the surface. Returns
+/// whether it was lost.
 #[cold]
 #[inline(never)]
 pub(super) fn rescue(design: &MicroContact, y: &mut [f64; 4], gap_m: f64, force_n: f64) -> bool {

@@ -4,7 +4,8 @@
 //! m_f v_f' = k_s (x_s − x_f) + b_s (v_s − v_f) − F_n
 //! m_s v_s' = −k_s (x_s − x_f) − b_s (v_s − v_f) + k_m max(0, x_m − x_s)
 //! ```
-//! Positions are positive out of the surface; x_f is the finger's less the pad's unloaded thickness.
+//! Positions are positive out of the surface; x_f is the finger's less the pad's unloaded
+//! thickness.
 //!
 //! | symbol | field | |
 //! |---|---|---|
@@ -15,17 +16,18 @@
 //! | x_s, v_s, x_f | [`ContactSample::pad_m`], [`ContactSample::pad_velocity_m_s`], [`ContactSample::finger_m`] | |
 //!
 //! What we changed, and what it brings:
-//! - three integrators ([`Integrator`]) instead of one, chosen by a rule ([`Choice`]) that never runs an
-//!   unsafe one; the paper's own is one of them, with its damper centred in time;
+//! - three integrators ([`Integrator`]) instead of one, chosen by a rule ([`Choice`]) that never
+//!   runs an unsafe one; the paper's own is one of them, with its damper centred in time;
 //! - a leash: beyond [`Probe::leash_m`] of separation nothing moves further up (an unloaded finger
 //!   drifts away in the paper's equations);
-//! - collisions as timed events with their closing speed, and the mean contact force of each step, so
-//!   that force × step is the impulse;
+//! - collisions as timed events with their closing speed, and the mean contact force of each step,
+//!   so that force × step is the impulse;
 //! - hostile input is repaired and counted (table in the module `guard`).
 //!
-//! Measured at 44.1 kHz with the default probe (`tests/micro_contact_accuracy.rs`: RMS error over the AC
-//! RMS of a 64 times oversampled reference that agrees with scipy's DOP853 to 1e-5; geometric mean of
-//! 12 profiles / of 12 held-out ones; `tests/micro_contact_passivity.rs`: undamped bouncing, 10 s):
+//! Measured at 44.1 kHz with the default probe (`tests/micro_contact_accuracy.rs`: RMS error over
+//! the AC RMS of a 64 times oversampled reference that agrees with scipy's DOP853 to 1e-5;
+//! geometric mean of 12 profiles / of 12 held-out ones; `tests/micro_contact_passivity.rs`:
+//! undamped bouncing, 10 s):
 //!
 //! | integrator | pad position | spring force | energy gain | latency |
 //! |---|---|---|---|---|
@@ -34,8 +36,8 @@
 //! | exact events (default) | 2.3e-5 / 1.4e-5 | 1.5e-4 / 9.4e-5 | < 1e-6 to 5e6 N/m | 1 sample |
 //! | energy-conserving | 1.1e-3 / 7.3e-4 | 7.2e-3 / 5.4e-3 | < 1e-10 to 9e7 N/m | 0 |
 //!
-//! A row of Euler holds the force at the row's time (the mean over the step centred on it); the other
-//! two give the mean over the step that ends at the row.
+//! A row of Euler holds the force at the row's time (the mean over the step centred on it); the
+//! other two give the mean over the step that ends at the row.
 mod bends;
 mod choice;
 mod energy_conserving;
@@ -112,7 +114,8 @@ impl MicroContact {
     /// Designs the contact; what runs may differ from `wanted` as [`Choice`] documents.
     ///
     /// # Errors
-    /// When a field of the probe is outside its range, or the rate outside 1 kHz to 20 MHz (oversampled references).
+    /// When a field of the probe is outside its range, or the rate outside 1 kHz to 20 MHz
+    /// (oversampled references).
     pub fn new(probe: &Probe, wanted: Integrator, sample_rate_hz: f64) -> Result<Self, DesignError> {
         probe.check()?;
         let expected = "from 1 kHz to 20 MHz";
@@ -123,8 +126,8 @@ impl MicroContact {
         Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, level: Level::detect() })
     }
 
-    /// The same probe, designed as it was, on a contact of another stiffness, N/m. A pad that flies does not feel that stiffness, so half of the
-    /// exact scheme is there already.
+    /// Probe, designed as it was, on a contact of another stiffness, N/m. A pad that flies does not
+    /// feel that stiffness, so half of the exact scheme is there already.
     ///
     /// # Errors
     /// When the stiffness is outside the range of [`Probe`].
@@ -141,8 +144,8 @@ impl MicroContact {
         Ok(Self { probe, choice, scheme, ..*self })
     }
 
-    /// The same on a chosen instruction set. Whether products and sums round apart, as on [`Level::PORTABLE`], or together, as on all
-    /// others, shows in the last bits of a row.
+    /// Contact on a chosen instruction set. Whether products and sums round apart, as on
+    /// [`Level::PORTABLE`], or together, as on all others, shows in the last bits of a row.
     #[must_use]
     pub fn on(self, level: Level) -> Self {
         Self { level, ..self }
@@ -172,7 +175,7 @@ impl MicroContact {
         self.choice.substeps
     }
 
-    /// What was decided and why; prints as a sentence.
+    /// Decision and its reason; prints as a sentence.
     #[must_use]
     pub fn choice(&self) -> Choice {
         self.choice
@@ -197,8 +200,9 @@ impl MicroContact {
         state
     }
 
-    /// [`Self::at_rest`] on ground that rises at `velocity_m_s` and did so before: finger and pad rise with it. A velocity
-    /// that is no number, or crosses all heights there are within a sample, is zero.
+    /// [`Self::at_rest`] on ground that rises at `velocity_m_s` and did so before: finger and pad
+    /// rise with it. A velocity that is no number, or crosses all heights there are within a
+    /// sample, is zero.
     #[must_use]
     pub fn riding(&self, height_m: f64, normal_force_n: f64, velocity_m_s: f64) -> ContactState {
         let mut state = self.at_rest(height_m, normal_force_n);
@@ -214,8 +218,9 @@ impl MicroContact {
         state
     }
 
-    /// [`Self::riding`] up to the middle one of three heights, over the ground about it: one a sample before, there, and one a sample later.
-    /// The next input is the last of them, or with a latency the one after it.
+    /// [`Self::riding`] up to the middle one of three heights, over the ground about it: one a
+    /// sample before, there, and one a sample later. The next input is the last of them, or with a
+    /// latency the one after it.
     #[must_use]
     pub fn leaving_the_line(
         &self,
@@ -230,8 +235,9 @@ impl MicroContact {
         state
     }
 
-    /// An unloaded pad that meets this height at the closing speed (at most 20 m/s), one sample before
-    /// the first input: its onset is reported in the first rows. Without a closing speed above zero the finger is [`Self::at_rest`].
+    /// An unloaded pad that meets this height at the closing speed (at most 20 m/s), one sample
+    /// before the first input: its onset is reported in the first rows. Without a closing speed
+    /// above zero the finger is [`Self::at_rest`].
     #[must_use]
     pub fn landing(&self, height_m: f64, normal_force_n: f64, closing_m_s: f64) -> ContactState {
         self.landing_later(height_m, normal_force_n, closing_m_s, 0.0)
@@ -257,7 +263,8 @@ impl MicroContact {
                 Scheme::EnergyConserving(_) => 0.0,
             };
             let later_samples = later_samples.clamp(0.0, 16.0);
-            // What presses speeds the finger up on its way down; the pad behind its damper does not follow so soon.
+            // What presses speeds the finger up on its way down; the pad behind its damper does not
+            // follow so soon.
             let gained = normal_force_n.clamp(0.0, guard::MAX_FORCE_N) * self.step_s * later_samples
                 / self.probe.finger_mass_kg;
             state.y = [gap_m + later_samples * drift, 0.0, -speed, gained - speed];
@@ -280,7 +287,8 @@ impl MicroContact {
         self.run_over(state, height_m, normal_force_n, GroundBetween::AtSamples, out);
     }
 
-    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]). Only the exact scheme looks at it.
+    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]). Only the
+    /// exact scheme looks at it.
     pub fn run_over(
         &self,
         state: &mut ContactState,
@@ -296,7 +304,7 @@ impl MicroContact {
         });
     }
 
-    /// Whether the contact, if this height and force stay, no longer moves by more than
+    /// Tests whether the contact, if this height and force stay, no longer moves by more than
     /// [`SETTLED_M`]: then its rows are those of [`Self::at_rest`], or of a finger hanging free
     /// without load, and it may sleep.
     #[must_use]
@@ -311,8 +319,9 @@ impl MicroContact {
         inputs_stay && still && near(state.y[1], rest[1]) && (hangs || near(state.y[0], rest[0]))
     }
 
-    /// Energy in masses and springs, J, at the last row (the Euler schemes: half a step off). Without
-    /// damper, surface motion and normal force it is conserved; the passivity tests hold it to that.
+    /// Energy in masses and springs, J, at the last row (the Euler schemes: half a step off).
+    /// Without damper, surface motion and normal force it is conserved; the passivity tests hold it
+    /// to that.
     #[must_use]
     pub fn energy_j(&self, state: &ContactState) -> f64 {
         let Probe { pad_mass_kg, pad_stiffness_n_m, finger_mass_kg, contact_stiffness_n_m, .. } = self.probe;

@@ -7,22 +7,25 @@ use crate::limits::probe as limits;
 /// model (ROBOMECH Journal, table 1); 0.11–0.255 g recalled from Wiertlewski & Hayward 2012 (which
 /// Hasti §III-C cites, not opened by us: **recalled**).
 pub const PAD_MASS_KG: f64 = 0.15e-3;
-/// Stiffness of the pad between skin and bone, N/m. 1000 in the same table; range 600–1430 **recalled**.
+/// Stiffness of the pad between skin and bone, N/m. 1000 in the same table; range 600–1430
+/// **recalled**.
 pub const PAD_STIFFNESS_N_M: f64 = 1000.0;
 /// Damping of the pad, N·s/m. 1.0 in the same table; 1.45–2.77 **recalled**.
 pub const PAD_DAMPING_N_S_M: f64 = 2.0;
 /// Mass of the finger behind the pad, kg. **Assumed**: only the order of magnitude is known.
 pub const FINGER_MASS_KG: f64 = 20e-3;
-/// Stiffness of skin on surface at 1 N, N/m. **Measured here**: above it the contact is chaotic on rough ground, below it micro-collisions are
-/// silent (with 8–16 µm of micro-relief, 0.05–0.2 m/s; `docs/feel.md` has the map). The same as F/u of a rough contact
-/// (B. Persson 2007: u about 0.4 rms) on 12 µm.
+/// Stiffness of skin on surface at 1 N, N/m. **Measured here**: above it the contact is chaotic on
+/// rough ground, below it micro-collisions are silent (with 8–16 µm of micro-relief, 0.05–0.2 m/s;
+/// `docs/feel.md` has the map). The same as F/u of a rough contact (B. Persson 2007: u about 0.4
+/// rms) on 12 µm.
 pub const CONTACT_STIFFNESS_N_M: f64 = 2e5;
 /// n of k_m ∝ Fⁿ: Hertz, a sphere on a plane.
 pub const FORCE_EXPONENT: f64 = 1.0 / 3.0;
-/// Width of a ridge of the fingerprint, m: about 0.5 mm from one to the next (Scheibert and others 2009).
+/// Width of a ridge of the fingerprint, m: about 0.5 mm from one to the next (Scheibert and others
+/// 2009).
 pub const RIDGE_M: f64 = 0.46e-3;
-/// Longest gap between skin and surface that the finger's own motion may open, m. **Design choice**:
-/// an unloaded finger drifts 88 mm away in one second without it.
+/// Longest gap between skin and surface that the finger's own motion may open, m. **Design
+/// choice**: an unloaded finger drifts 88 mm away in one second without it.
 pub const LEASH_M: f64 = 1e-3;
 
 /// The mechanical parameters of one probe (Hasti Fig. 6). All SI.
@@ -45,13 +48,14 @@ pub struct Probe {
     pub contact_stiffness_n_m: f64,
     /// Separation beyond which upward motion stops, m; 1e-6 to 0.05.
     pub leash_m: f64,
-    /// Radius of the sphere that rides on the surface, m; 0 (a point) to 0.1. The contact model does not see it: it is for whoever
-    /// makes the heights.
+    /// Radius of the sphere that rides on the surface, m; 0 (a point) to 0.1. The contact model
+    /// does not see it: it is for whoever makes the heights.
     pub tip_radius_m: f64,
     /// n of k_m ∝ Fⁿ, F the pressing force in newtons; 0 (always `contact_stiffness_n_m`) to 1.
     pub force_exponent: f64,
-    /// Width over which skin averages what an acceleration channel has of the ground ([`crate::actuator::Skin`]), m; 0 (no skin: a tool) to
-    /// 0.01. The contact model does not see it.
+    /// Width over which skin averages what an acceleration channel has of the ground
+    /// ([`crate::actuator::Skin`]), m; 0 (no skin: a tool) to 0.01. The contact model does not see
+    /// it.
     pub ridge_m: f64,
 }
 

@@ -1,7 +1,8 @@
 //! Four numbers that are worked on together: a state, or a column of its map.
 //!
-//! Products and sums are fused where the level has a fused multiply-add and not elsewhere, always in the same order:
-//! two machines may differ in the last bit, two runs or two splits on one machine never do.
+//! Products and sums are fused where the level has a fused multiply-add and not elsewhere, always
+//! in the same order: two machines may differ in the last bit, two runs or two splits on one
+//! machine never do.
 
 use crate::simd::Set;
 use fearless_simd::prelude::*;
@@ -12,7 +13,7 @@ pub(super) trait Quad: Copy {
     /// Four numbers.
     fn load(self, from: &[f64; 4]) -> Self;
     fn array(self) -> [f64; 4];
-    /// The same value in every lane.
+    /// One value in every lane.
     fn splat(self, value: f64) -> Self;
     /// Lane `I` in every lane.
     fn spread<const I: usize>(self) -> Self;
@@ -70,8 +71,8 @@ impl<S: Set> Quad for f64x4<S> {
     }
 }
 
-/// Another vector whose products and sums round apart even where the level could fuse them: for what gave those bits before it was
-/// worked out four at a time.
+/// Another vector whose products and sums round apart even where the level could fuse them: for
+/// what gave those bits before it was worked out four at a time.
 #[derive(Clone, Copy)]
 pub(super) struct Apart<Q>(pub Q);
 

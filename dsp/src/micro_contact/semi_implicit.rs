@@ -7,9 +7,9 @@
 //! x⁺  = x + h v⁺
 //! ```
 //! Everything but f is linear, so that the centred damper is solved at design time and costs
-//! nothing: y⁺ = M y + g F + w f. The state carries positions one drift ahead (x⁺), which shortens the
-//! chain from one contact force to the next. A row's positions and force hold at the row's time; its
-//! velocity is the mean of the two half-step velocities around it.
+//! nothing: y⁺ = M y + g F + w f. The state carries positions one drift ahead (x⁺), which shortens
+//! the chain from one contact force to the next. A row's positions and force hold at the row's
+//! time; its velocity is the mean of the two half-step velocities around it.
 
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
 use super::quad::Quad;

@@ -3,13 +3,14 @@
 /// The first touch of skin and surface within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Onset {
-    /// When, from 0 (the previous row's time) to 1 (this row's time).
+    /// Moment, from 0 (the previous row's time) to 1 (this row's time).
     pub offset: f64,
     /// Speed at which skin and surface met, m/s, above 0.
     pub closing_m_s: f64,
 }
 
-/// One row of output: everything holds at the row's time, forces and onsets cover the step that ends there.
+/// One row of output: everything holds at the row's time, forces and onsets cover the step that
+/// ends there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactSample {
     /// x_m: the profile height used, m.
@@ -50,13 +51,13 @@ impl ContactState {
         Self { y, gap_m: y[0], heights_m: [height_m; 3], forces_n: [force_n; 2], clock: 0, resets: 0 }
     }
 
-    /// How many inputs were replaced or states put back on the surface since the start.
+    /// Number of inputs replaced or states put back on the surface since the start.
     #[must_use]
     pub fn resets(&self) -> u32 {
         self.resets
     }
 
-    /// Whether the skin touched the surface at the last row.
+    /// Tests whether the skin touched the surface at the last row.
     #[must_use]
     pub fn is_touching(&self) -> bool {
         self.gap_m < 0.0

@@ -1,14 +1,17 @@
-//! A contact that stiffens with the reported force: designs for a ladder of stiffnesses, and what lies between two rungs.
+//! A contact that stiffens with the reported force: designs for a ladder of stiffnesses, and what
+//! lies between two rungs.
 //!
 //! ```text
 //! k_m(F) = k₁ Fⁿ        F: the reported force in newtons, not the instant one
 //! ```
-//! n is ⅓ for a sphere on a plane (Hertz), about 0.1–0.25 for a tool on stone and paper, 0.7–0.8 on pile and foam (fitted to published
-//! strokes with a tool: Culbertson, Lopez Delgado, Kuchenbecker 2014). Following the instant force would end the closed-form flow;
-//! the reported one changes slowly, so that the flow is that of a fixed spring within a step.
+//! n is ⅓ for a sphere on a plane (Hertz), about 0.1–0.25 for a tool on stone and paper, 0.7–0.8 on
+//! pile and foam (fitted to published strokes with a tool: Culbertson, Lopez Delgado, Kuchenbecker
+//! 2014). Following the instant force would end the closed-form flow; the reported one changes
+//! slowly, so that the flow is that of a fixed spring within a step.
 //!
-//! The maps of a stiffness between two rungs are the mean of theirs, weighed linearly in k. Two rungs lie a quarter of an octave apart: the
-//! spring that the mean stands for is off by less than 0.4 %, on the side that loses energy.
+//! The maps of a stiffness between two rungs are the mean of theirs, weighed linearly in k. Two
+//! rungs lie a quarter of an octave apart: the spring that the mean stands for is off by less than
+//! 0.4 %, on the side that loses energy.
 
 use super::{MicroContact, Scheme};
 
@@ -16,7 +19,8 @@ use super::{MicroContact, Scheme};
 pub const RUNGS_AN_OCTAVE: usize = 4;
 
 impl MicroContact {
-    /// Whether two designs differ in nothing that would keep a contact from going over from one to the other.
+    /// Tests whether two designs differ in nothing that would keep a contact from going over from
+    /// one to the other.
     #[must_use]
     pub fn is_a_rung_beside(&self, other: &Self) -> bool {
         self.choice.used == other.choice.used
@@ -24,7 +28,8 @@ impl MicroContact {
             && self.step_s == other.step_s
     }
 
-    /// Becomes the design between `softer` (`share` 0) and `harder` (1), two rungs of one ladder. A contact's state goes on as it is.
+    /// Becomes the design between `softer` (`share` 0) and `harder` (1), two rungs of one ladder. A
+    /// contact's state goes on as it is.
     pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64) {
         let mix = |a: f64, b: f64| a + share * (b - a);
         self.probe = softer.probe;

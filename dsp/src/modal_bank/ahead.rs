@@ -1,4 +1,5 @@
-//! Ahead: what a bank would say in the coming 64 samples if nothing struck it, told as another output of its modes.
+//! Ahead: what a bank would say in the coming 64 samples if nothing struck it, told as another
+//! output of its modes.
 //!
 //! ```text
 //! y[16 j + n] = Σ modes hₙ₊₁ (vⱼ − wⱼ) + hₙ₊₂ wⱼ                                 n = 0…15
@@ -11,8 +12,10 @@
 //! | hₙ | what an impulse is n samples later in the other output |
 //! | J | a lane of [`AheadGroup`] |
 //!
-//! Five products a mode and four samples, as in the bank itself ([`OUT`](super::design::OUT)), and no chain of states longer than three: less than
-//! half of what a rendered bank costs. It is for what has to know the free motion before it can tell the forces ([`stick_slip`](crate::stick_slip)).
+//! Five products a mode and four samples, as in the bank itself ([`OUT`](super::design::OUT)), and
+//! no chain of states longer than three: less than half of what a rendered bank costs. It is for
+//! what has to know the free motion before it can tell the forces
+//! ([`stick_slip`](crate::stick_slip)).
 #![allow(unsafe_code)]
 // `g` counts groups, `n` samples and `j` sixteenths, in several arrays at once.
 #![allow(clippy::needless_range_loop)]
@@ -49,8 +52,8 @@ impl AheadGroup {
     /// Sixteen lanes of which nothing is heard.
     pub const SILENT: Self = Self { hears: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
 
-    /// Up to 16 modes as the other output hears them: frequencies and decays of the bank's, other amplitudes and phases. Modes at or above the
-    /// Nyquist frequency are silent.
+    /// Up to 16 modes as the other output hears them: frequencies and decays of the bank's, other
+    /// amplitudes and phases. Modes at or above the Nyquist frequency are silent.
     ///
     /// # Errors
     /// As [`design_group`](super::design_group).
@@ -96,8 +99,9 @@ pub(super) fn ahead(level: Level, groups: &[AheadGroup], states: &[GroupState], 
 #[inline(always)]
 fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out: &mut [f32; CELL]) {
     let mut turns = [const { MaybeUninit::<TurnSums>::uninit() }; CELL / TURN];
-    // SAFETY: there are `len` lanes from `lane` on and at most AT_ONCE groups; the first groups write every lane of every turn, and there are some. So
-    // turns may be read as what they are, in the same memory.
+    // SAFETY: there are `len` lanes from `lane` on and at most AT_ONCE groups; the first groups
+    // write every lane of every turn, and there are some. So turns may be read as what they are, in
+    // the same memory.
     let turns = unsafe {
         for (part, (groups, states)) in groups.chunks(AT_ONCE).zip(states.chunks(AT_ONCE)).enumerate() {
             for lane in (0..LANES).step_by(len::<T>()) {
@@ -119,8 +123,8 @@ fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out:
 /// Adds one vector of each group.
 ///
 /// # Safety
-/// There are [`len`] lanes from `lane` on, and at most [`AT_ONCE`] groups; these lanes of `turns` are written unless the groups are the first. `TILE`
-/// divides [`TURNS`].
+/// There are [`len`] lanes from `lane` on, and at most [`AT_ONCE`] groups; these lanes of `turns`
+/// are written unless the groups are the first. `TILE` divides [`TURNS`].
 #[inline(always)]
 unsafe fn add_lanes<T: Set, const TILE: usize>(
     token: T,
@@ -133,7 +137,8 @@ unsafe fn add_lanes<T: Set, const TILE: usize>(
     let count = groups.len().min(states.len());
     let nothing = Vector::<T>::splat(token, 0.0);
     let mut at = [[const { MaybeUninit::<[Vector<T>; 2]>::uninit() }; AT_ONCE]; CELL / STEP];
-    // SAFETY: every pointer goes to lane `lane` of an array of LANES values, and states are read as far as they were written; the caller's promise.
+    // SAFETY: every pointer goes to lane `lane` of an array of LANES values, and states are read as
+    // far as they were written; the caller's promise.
     unsafe {
         let read = |lanes: &Lanes| load(token, lanes.as_ptr().add(lane));
         for g in 0..count {

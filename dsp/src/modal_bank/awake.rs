@@ -9,17 +9,19 @@ use core::ops::Range;
 /// Inputs of an ordinary call.
 const FEW_INPUTS: usize = 4;
 
-/// Which groups ring: of each section of the bank, one between two levels of modes left out, how many leading ones. Within a section what
-/// rings longest stands first, and the sections stand in the order of need ([`super::shedding_order`]).
+/// Which groups ring: of each section of the bank, one between two levels of modes left out, how
+/// many leading ones. Within a section what rings longest stands first, and the sections stand in
+/// the order of need ([`super::shedding_order`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Awake {
-    /// Where the sections begin, and where the last ends.
+    /// Beginnings of the sections, and the end of the last.
     bounds: [usize; MODE_LEVELS + 1],
     groups: [usize; MODE_LEVELS],
-    /// Whether a section is rendered together with the one behind it. It changes on the grid only, because groups that are rendered together
-    /// share what a turn that is cut keeps.
+    /// True where a section is rendered together with the one behind it. It changes on the grid
+    /// only, because groups that are rendered together share what a turn that is cut keeps.
     joined: [bool; MODE_LEVELS],
-    /// Whether every group rings, as in a body that is being stroked: nothing is to be looked for then.
+    /// True where every group rings, as in a body that is being stroked: nothing is to be looked
+    /// for then.
     all_ring: bool,
 }
 
@@ -46,7 +48,7 @@ impl Awake {
         (self.groups, self.joined, self.all_ring) = ([0; MODE_LEVELS], [true; MODE_LEVELS], false);
     }
 
-    /// How many leading groups it takes to have all that are rendered at the moment.
+    /// Number of leading groups that hold all that are rendered at the moment.
     pub(super) fn groups(&self) -> usize {
         if self.all_ring {
             return self.bounds[MODE_LEVELS];
@@ -55,7 +57,8 @@ impl Awake {
         last.map_or(0, |section| self.bounds[section] + self.groups[section])
     }
 
-    /// A section whose groups all ring goes on in the one behind, and so does one that sleeps before one that sleeps.
+    /// A section whose groups all ring goes on in the one behind, and so does one that sleeps
+    /// before one that sleeps.
     fn join(&mut self) {
         for (section, joined) in self.joined.iter_mut().enumerate() {
             let (awake, next) = (self.groups[section], self.groups.get(section + 1).copied().unwrap_or(0));
@@ -70,8 +73,9 @@ impl Awake {
         self.all_ring = all_awake && self.joined == [true; MODE_LEVELS] && self.bounds[MODE_LEVELS] > 0;
     }
 
-    /// Renders what rings, skipping what sleeps: groups wake with the first impulse that is not zero and are settled on the absolute
-    /// grid. Of the groups the first [`Bank::driven`] hear anything; the others ring out. `shared`: one input without gains.
+    /// Renders what rings, skipping what sleeps: groups wake with the first impulse that is not
+    /// zero and are settled on the absolute grid. Of the groups the first [`Bank::driven`] hear
+    /// anything; the others ring out. `shared`: one input without gains.
     pub(super) fn run(
         &mut self,
         bank: Bank<'_>,
@@ -112,7 +116,8 @@ impl Awake {
             {
                 self.wake(driven);
             }
-            // Several runs are added up first: what `out` holds already must not come between them, or bits would depend on who rings first.
+            // Several runs are added up first: what `out` holds already must not come between them,
+            // or bits would depend on who rings first.
             let (mut together, several) = (SILENCE, self.takes_several_calls(driven));
             let y = if several { &mut together[..len] } else { &mut out[part.clone()] };
             self.each_run(|run| {
@@ -147,7 +152,7 @@ impl Awake {
         }
     }
 
-    /// Whether any of the first `driven` groups sleeps.
+    /// Tests whether any of the first `driven` groups sleeps.
     fn sleeps(&self, driven: usize) -> bool {
         if self.all_ring {
             return false;
@@ -164,7 +169,7 @@ impl Awake {
         self.note_whether_all_ring();
     }
 
-    /// Whether more than one run is rendered, or one that hears in part.
+    /// Tests whether more than one run is rendered, or one of which a part is driven.
     fn takes_several_calls(&self, driven: usize) -> bool {
         if self.all_ring {
             return driven > 0 && driven < self.bounds[MODE_LEVELS];
@@ -199,7 +204,7 @@ impl Awake {
     }
 }
 
-/// What is rendered.
+/// Groups that are rendered.
 #[derive(Debug)]
 pub(super) struct Bank<'a> {
     /// The instructions.
@@ -208,7 +213,7 @@ pub(super) struct Bank<'a> {
     pub(super) groups: &'a [ModeGroup],
     /// Their states.
     pub(super) states: &'a mut [GroupState],
-    /// How many leading groups hear the inputs.
+    /// Number of leading groups that the inputs drive.
     pub(super) driven: usize,
     /// Amplitude below which a mode is put to rest, output units.
     pub(super) threshold: f32,
@@ -216,7 +221,8 @@ pub(super) struct Bank<'a> {
 
 const SILENCE: [f32; GRID_SAMPLES as usize] = [0.0; GRID_SAMPLES as usize];
 
-/// Whether any impulse is not zero. All bits but the sign, or'ed: many at a time where `any` looks at one.
+/// Tests whether any impulse is not zero. All bits but the sign, or'ed: many at a time where `any`
+/// looks at one.
 fn is_struck(impulses: &[f32]) -> bool {
     impulses.iter().fold(0, |bits, u| bits | (u.to_bits() << 1)) != 0
 }

@@ -4,8 +4,9 @@
 //! out[n] += Σ modes (hₘ * Σ inputs gₘᵢ uᵢ)[n]          hₘ: the impulse response of mode m
 //! ```
 //!
-//! Written plainly it is the loop of [`ReferenceMode`](super::ReferenceMode), one mode after the other; the bank renders the same 16 modes at a time, in the
-//! instructions that its [`Level`] stands for, and leaves out the groups that have rung out.
+//! Written plainly it is the loop of [`ReferenceMode`](super::ReferenceMode), one mode after the
+//! other; the bank renders the same 16 modes at a time, in the instructions that its [`Level`]
+//! stands for, and leaves out the groups that have rung out.
 
 use super::ahead::{self, AheadGroup};
 use super::awake::Awake;
@@ -15,19 +16,22 @@ use super::shedding::{MODE_LEVELS, SheddingLevels};
 use super::{Input, SLEEP_AMPLITUDE, retune, sleep};
 use crate::simd::Level;
 
-/// What strikes a bank.
+/// Inputs of a bank.
 #[derive(Debug, Clone, Copy)]
 pub enum Inputs<'a> {
     /// One input that every mode hears at gain 1: the impulse of each sample, N·s.
     One(&'a [f32]),
-    /// Up to [`MAX_INPUTS`](super::MAX_INPUTS) inputs, each with a gain for every mode; more are not heard.
+    /// Up to [`MAX_INPUTS`](super::MAX_INPUTS) inputs, each with a gain for every mode; more are
+    /// not heard.
     ///
-    /// Gains that change while something slides are two inputs: the same impulses once with the gains that were, fading out, and once
-    /// with those that come, fading in. The sum is the straight line between both, sample by sample.
+    /// Gains that change while something slides are two inputs: the same impulses once with the
+    /// gains that were, fading out, and once with those that come, fading in. The sum is the
+    /// straight line between both, sample by sample.
     Placed(&'a [Input<'a>]),
 }
 
-/// The modes of a body and what they remember, in memory of the caller's: slices, arrays or boxes of equal length.
+/// The modes of a body and what they remember, in memory of the caller's: slices, arrays or boxes
+/// of equal length.
 ///
 /// Design is [`design_groups`](super::design_groups), state is [`GroupState`]; this runs them.
 ///
@@ -61,40 +65,44 @@ pub struct ModalBank<G, S> {
 impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalBank<G, S> {
     /// A bank as its states say. Groups beyond the states are silent.
     ///
-    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones, or in the order
-    /// of [`shedding_order`](super::shedding_order) and [`in_sections`](Self::in_sections).
+    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that
+    /// still ring are the first ones, or in the order of [`shedding_order`](super::shedding_order)
+    /// and [`in_sections`](Self::in_sections).
     pub fn new(level: Level, groups: G, states: S) -> Self {
         let count = groups.as_ref().len().min(states.as_ref().len());
         let awake = Awake::of(&states.as_ref()[..count], &[count; MODE_LEVELS]);
         Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
     }
 
-    /// Falls asleep section by section, between each two levels at which groups are left out, because in each what rings longest stands first.
+    /// Falls asleep section by section, between each two levels at which groups are left out,
+    /// because in each what rings longest stands first.
     #[must_use]
     pub fn in_sections(self, levels: &SheddingLevels) -> Self {
         let awake = Awake::of(&self.states.as_ref()[..self.groups()], levels);
         Self { awake, ..self }
     }
 
-    /// A mode is put exactly to rest once its amplitude is below this, in units of the output; 0 lets it ring on to the last bit. Without it,
-    /// [`SLEEP_AMPLITUDE`].
+    /// A mode is put exactly to rest once its amplitude is below this, in units of the output; 0
+    /// lets it ring on to the last bit. Without it, [`SLEEP_AMPLITUDE`].
     #[must_use]
     pub fn sleeping_below(mut self, amplitude: f32) -> Self {
         self.threshold = amplitude;
         self
     }
 
-    /// Adds the response to the inputs to `out`; sample 0 of all of them is the absolute sample `first_sample`, which goes on where the last
-    /// call ended. Slices of unequal length are used as far as the shortest reaches. Any split into blocks renders the same bits.
+    /// Adds the response to the inputs to `out`; sample 0 of all of them is the absolute sample
+    /// `first_sample`, which goes on where the last call ended. Slices of unequal length are used
+    /// as far as the shortest reaches. Any split into blocks renders the same bits.
     ///
-    /// Two placed inputs cost two to three more operations a mode and sample than the one that all modes share.
+    /// Two placed inputs cost two to three more operations a mode and sample than the one that all
+    /// modes share.
     pub fn render(&mut self, first_sample: u64, inputs: Inputs<'_>, out: &mut [f32]) {
         let all = self.groups();
         self.render_leading(all, first_sample, inputs, out);
     }
 
-    /// As [`render`](Self::render); of the groups only the first `driven` hear anything, and the others ring out: what a machine that is
-    /// too slow leaves out.
+    /// As [`render`](Self::render); of the groups only the first `driven` hear anything, and the
+    /// others ring out: what a machine that is too slow leaves out.
     pub fn render_leading(&mut self, driven: usize, first_sample: u64, inputs: Inputs<'_>, out: &mut [f32]) {
         let (groups, states) = (self.groups.as_ref(), self.states.as_mut());
         let bank =
@@ -107,10 +115,11 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         }
     }
 
-    /// What the coming 64 samples would be if nothing struck the bank, as `groups` hear its modes ([`AheadGroup`]): groups beyond them are not
-    /// heard.
+    /// Zero-input response of the coming 64 samples, as `groups` have its modes ([`AheadGroup`]):
+    /// groups beyond them are not heard.
     ///
-    /// At an absolute multiple of [`GRID_SAMPLES`](super::GRID_SAMPLES), where states are as exact as they get.
+    /// At an absolute multiple of [`GRID_SAMPLES`](super::GRID_SAMPLES), where states are as exact
+    /// as they get.
     pub fn ahead(&self, groups: &[AheadGroup], out: &mut [f32; GRID_SAMPLES as usize]) {
         let awake = self.awake().min(groups.len());
         ahead::ahead(self.level(), &groups[..awake], &self.states.as_ref()[..awake], out);
@@ -127,18 +136,19 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         self.groups.as_ref().len().min(self.states.as_ref().len())
     }
 
-    /// How many leading groups it takes to have all that are rendered at the moment; the rest sleep until the next impulse.
+    /// Number of leading groups that hold all that are rendered at the moment; the rest sleep until
+    /// the next impulse.
     pub fn awake(&self) -> usize {
         self.awake.groups()
     }
 
-    /// Whether every mode is exactly at rest.
+    /// Tests whether every mode is exactly at rest.
     pub fn is_at_rest(&self) -> bool {
         self.states.as_ref().iter().all(GroupState::is_at_rest)
     }
 
-    /// Energy of the ringing: the sum over the modes of the squared amplitude, output units squared; within
-    /// a turn of four samples that of its beginning.
+    /// Energy of the ringing: the sum over the modes of the squared amplitude, output units
+    /// squared; within a turn of four samples that of its beginning.
     pub fn energy(&self) -> f32 {
         let each = self.groups.as_ref().iter().zip(self.states.as_ref());
         each.map(|(group, state)| sleep::energy(group, state)).sum()
@@ -151,11 +161,13 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
 }
 
 impl<G: AsMut<[ModeGroup]>, S: AsMut<[GroupState]>> ModalBank<G, S> {
-    /// Gives a group other frequencies, decays and amplitudes while it rings: each mode goes on at its level and phase, and no energy comes
-    /// from nowhere. A mode that is silent before or after comes to rest. Groups that are not there are left alone.
+    /// Gives a group other frequencies, decays and amplitudes while it rings: each mode goes on at
+    /// its level and phase, and no energy comes from nowhere. A mode that is silent before or after
+    /// comes to rest. Groups that are not there are left alone.
     ///
-    /// Between two calls of [`render`](Self::render) of which the second begins at an absolute multiple of four samples, best of
-    /// [`GRID_SAMPLES`](super::GRID_SAMPLES): within a turn of four the states are still those of its beginning.
+    /// Between two calls of [`render`](Self::render) of which the second begins at an absolute
+    /// multiple of four samples, best of [`GRID_SAMPLES`](super::GRID_SAMPLES): within a turn of
+    /// four the states are still those of its beginning.
     pub fn retune(&mut self, index: usize, group: &ModeGroup) {
         let (groups, states) = (self.groups.as_mut(), self.states.as_mut());
         if let (Some(old), Some(state)) = (groups.get_mut(index), states.get_mut(index)) {
@@ -165,7 +177,8 @@ impl<G: AsMut<[ModeGroup]>, S: AsMut<[GroupState]>> ModalBank<G, S> {
     }
 }
 
-/// What each lane of the groups takes from one input, of one gain for each mode; the lanes that are left over take nothing.
+/// Gain of each lane of the groups from one input, of one gain for each mode; the lanes that are
+/// left over take nothing.
 pub fn lane_gains(gains: impl IntoIterator<Item = f32>) -> impl Iterator<Item = LaneGains> {
     let mut gains = gains.into_iter().peekable();
     core::iter::from_fn(move || {

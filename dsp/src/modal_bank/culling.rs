@@ -1,8 +1,10 @@
-//! Culling of inaudible modes: those that nobody can hear need not be computed, whatever the distance.
+//! Culling of inaudible modes: those that nobody can hear need not be computed, whatever the
+//! distance.
 //!
-//! A mode goes when it starts more than `level_db` below the loudest, or when a louder mode that lasts at
-//! least as long masks it all the time. Masking follows the tonal model of ISO/IEC 11172-3, annex D.1
-//! (psychoacoustic model 1), on Traunmüller's Bark scale: a masker of level L at z hides
+//! A mode goes when it starts more than `level_db` below the loudest, or when a louder mode that
+//! lasts at least as long masks it all the time. Masking follows the tonal model of ISO/IEC
+//! 11172-3, annex D.1 (psychoacoustic model 1), on Traunmüller's Bark scale: a masker of level L at
+//! z hides
 //!
 //! ```text
 //! L − 6.025 − 0.275 z + slope(Δz)         slope = 17 Δz − 0.4 L + 11   −3 ≤ Δz < −1
@@ -10,13 +12,13 @@
 //!                                                 −17 Δz                0 ≤ Δz < 1
 //!                                                 −17 − (Δz − 1)(17 − 0.15 L)   1 ≤ Δz < 8
 //! ```
-//! L needs a listening level: the loudest mode is put at [`Culling::loudest_db_spl`] (assumed). Levels
-//! are those at the strike; since the masker decays no faster, the distance can only grow. The figures of
-//! the standard are recalled, not copied from its text.
+//! L needs a listening level: the loudest mode is put at [`Culling::loudest_db_spl`] (assumed).
+//! Levels are those at the strike; since the masker decays no faster, the distance can only grow.
+//! The figures of the standard are recalled, not copied from its text.
 
 use crate::mode::Mode;
 
-/// What counts as inaudible.
+/// Limits of audibility.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -44,12 +46,12 @@ impl Default for Culling {
     }
 }
 
-/// Marks in `keep` which modes are worth computing at `sample_rate_hz` and returns how many. Modes at or
-/// above Nyquist go as well. Entries of `keep` beyond the modes are left alone.
+/// Marks in `keep` which modes are worth computing at `sample_rate_hz` and returns how many. Modes
+/// at or above Nyquist go as well. Entries of `keep` beyond the modes are left alone.
 ///
-/// The time is proportional to the modes: maskers are looked up in bands of a tenth of a Bark, each of which remembers
-/// the loudest seen so far. Nothing audible goes for that; where modes are sorted by [`super::sort_by_decay`]
-/// hardly anything masked stays, in another order more may.
+/// The time is proportional to the modes: maskers are looked up in bands of a tenth of a Bark, each
+/// of which remembers the loudest seen so far. Nothing audible goes for that; where modes are
+/// sorted by [`super::sort_by_decay`] hardly anything masked stays, in another order more may.
 pub fn audible(modes: &[Mode], sample_rate_hz: f64, culling: &Culling, keep: &mut [bool]) -> usize {
     let sounds = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * sample_rate_hz;
     let loudest = modes.iter().filter(|m| sounds(m)).fold(0.0_f64, |a, m| a.max(m.amplitude.abs()));
@@ -91,8 +93,8 @@ const BANDS_PER_BARK: f64 = 10.0;
 /// Up to the end of the scale, 26.28 Bark.
 const BANDS: usize = 270;
 
-/// The loudest tone of every band. What a tone hides grows with its level, so a quieter one in the same band hardly
-/// ever hides more.
+/// The loudest tone of every band. What a tone hides grows with its level, so a quieter one in the
+/// same band hardly ever hides more.
 struct Maskers([Option<Tone>; BANDS]);
 
 impl Default for Maskers {
@@ -114,7 +116,7 @@ impl Maskers {
         }
     }
 
-    /// Whether a tone that lasts as long or longer hides this one.
+    /// Tests whether a tone that lasts as long or longer hides this one.
     fn hide(&self, tone: &Tone) -> bool {
         // Maskers reach 8 Bark up and 3 down.
         let near = Self::band(tone.bark - 8.0)..=Self::band(tone.bark + 3.0);

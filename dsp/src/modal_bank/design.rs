@@ -8,12 +8,12 @@ use core::f64::consts::PI;
 /// Samples between two trims; an absolute grid, so that no split into blocks changes a sample.
 pub const GRID_SAMPLES: u64 = 64;
 
-/// How a group is designed.
+/// Design of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GroupOptions {
     /// The bank is fed from an impulse ring ([`crate::hertz`]): each mode is divided by the ring's
-    /// cubic kernel at the mode's own complex frequency. It sounds the kernel's latency later, and its
-    /// direct term answers a slow force exactly.
+    /// cubic kernel at the mode's own complex frequency. It sounds the kernel's latency later, and
+    /// its direct term answers a slow force exactly.
     pub impulse_kernel_compensation: bool,
     /// Undo on the 64-sample grid what rounding R² and m to `f32` did to decay and pitch.
     pub true_t60: bool,
@@ -34,7 +34,7 @@ impl GroupOptions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct ModeGroup {
-    /// What every turn reads: [`STEP`] and [`OUT`]; lane l at [`place`].
+    /// Coefficients that every turn reads: [`STEP`] and [`OUT`]; lane l at [`place`].
     pub(super) hot: [Lanes; HOT],
     /// Once in [`GRID_SAMPLES`]: v gains `trim[0][0]` · v + `trim[0][1]` · w, w the same of row 1.
     pub(super) trim: [[Lanes; 2]; 2],
@@ -44,24 +44,27 @@ pub struct ModeGroup {
     pub(super) direct: Lanes,
     /// The output a quarter period later, but for the decay: the other component of its phasor.
     pub(super) quarter: [Lanes; 2],
-    /// What an impulse that all lanes hear sends to the output of its own and of the next three samples: h₀…h₃.
+    /// Response at the output of its own and of the next three samples to an impulse on all lanes:
+    /// h₀…h₃.
     pub(super) heard_as: [f32; TURN],
 }
 
 /// Two samples of free motion: v becomes coefficient 0 · v + 1 · w, w becomes 2 · v + 3 · w.
 pub(super) const STEP: usize = 0;
-/// The turn's outputs, of five products where eight would be the obvious way. An impulse is heard n samples later as hₙ, and
-/// the states are as good as two impulses: w in the last but one sample, v − w in the last. So output n is
-/// hₙ₊₁ (v − w) + hₙ₊₂ w: a filter of two taps over h₁…h₅, for which the shortest method (Toom and Cook's, Winograd's
-/// F(4, 2)) multiplies v − w, v, v − 2w, v + w and w by these. [`super::sums::outputs`] puts the products together.
+/// The turn's outputs, of five products where eight would be the obvious way. An impulse is heard n
+/// samples later as hₙ, and the states are as good as two impulses: w in the last but one sample, v
+/// − w in the last. So output n is hₙ₊₁ (v − w) + hₙ₊₂ w: a filter of two taps over h₁…h₅, for
+/// which the shortest method (Toom and Cook's, Winograd's F(4, 2)) multiplies v − w, v, v − 2w, v +
+/// w and w by these. [`super::sums::outputs`] puts the products together.
 pub(super) const OUT: usize = 4;
 /// Coefficients that every turn reads.
 pub(super) const HOT: usize = 9;
 /// Samples in a turn of the hot loop, which begins at absolute multiples of it.
 pub(super) const TURN: usize = 4;
 
-/// Where in coefficient `i` of [`ModeGroup::hot`] a lane lies: the halves of every other one change places. Vectors of eight
-/// from the same half of several cache lines come at 1.9 a cycle, from either half in turn at 2.5.
+/// Place of a lane in coefficient `i` of [`ModeGroup::hot`]: the halves of every other one change
+/// places. Vectors of eight from the same half of several cache lines come at 1.9 a cycle, from
+/// either half in turn at 2.5.
 pub(super) const fn place(i: usize, lane: usize) -> usize {
     lane ^ (i % 2 * (LANES / 2))
 }
@@ -69,15 +72,16 @@ pub(super) const fn place(i: usize, lane: usize) -> usize {
 /// One number for each mode of a group.
 pub(super) type Lanes = [f32; LANES];
 
-/// What 16 modes remember between samples.
+/// State of 16 modes between samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct GroupState {
     pub(super) v: Lanes,
     pub(super) w: Lanes,
-    /// What the lanes heard in the samples so far of a turn that is not complete; otherwise zero.
+    /// Inputs of the lanes in the samples so far of a turn that is not complete; otherwise zero.
     pub(super) pending: [Lanes; TURN - 1],
-    /// What those samples' inputs send to the outputs of the turn's other samples; kept by the first group of a bank.
+    /// Part of those samples' inputs in the outputs of the turn's other samples; kept by the first
+    /// group of a bank.
     pub(super) carried: [f32; TURN],
 }
 
@@ -100,7 +104,7 @@ impl Default for GroupState {
     }
 }
 
-/// What each lane takes from one of several inputs: the mode shape where that contact strikes, or
+/// Gain of each lane from one of several inputs: the mode shape where that contact strikes, or
 /// 1 and 0 to let the modes of several bodies share a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
@@ -114,7 +118,8 @@ pub(super) struct Pole {
     pub theta: f64,
     pub amplitude: f64,
     pub phase_rad: f64,
-    /// Added to h₀: ∫ h − Σ hⱼ, j ≥ 0, of the wanted mode's continuous and this one's sampled response.
+    /// Added to h₀: ∫ h − Σ hⱼ, j ≥ 0, of the wanted mode's continuous and this one's sampled
+    /// response.
     pub direct_correction: f64,
 }
 
@@ -138,7 +143,8 @@ impl Pole {
         }
         let mut pole = Self { decay, theta, amplitude, phase_rad, direct_correction: 0.0 };
         if options.impulse_kernel_compensation {
-            // A steady force is answered as by the equation; so is a slow one, up to its first derivative.
+            // A steady force is answered as by the equation; so is a slow one, up to its first
+            // derivative.
             let (b0, b1) = pole.numerator();
             let (sin, cos) = (libm::sin(mode.phase_rad), libm::cos(mode.phase_rad));
             let continuous = mode.amplitude * (theta * cos + decay * sin) / (decay * decay + theta * theta);
@@ -172,7 +178,8 @@ impl ModeGroup {
         let [_, [_, g]] = next;
         let step = square(next);
         let now = [b0, b0 * g + b1];
-        // Rows of (v, w): the output in each sample of the turn and the next. What is times v is h₁, h₂, …
+        // Rows of (v, w): the output in each sample of the turn and the next. What is times v is
+        // h₁, h₂, …
         let mut row = now;
         let h: [[f64; 2]; 5] = core::array::from_fn(|_| {
             [row] = product([row], next);
@@ -201,7 +208,8 @@ impl ModeGroup {
         }
     }
 
-    /// What the stored step of two samples lacks after a whole grid: (exact ^ 32) (stored ^ 32)⁻¹ − 1.
+    /// Deficit of the stored step of two samples after a whole grid: (exact ^ 32) (stored ^ 32)⁻¹ −
+    /// 1.
     fn set_trim(&mut self, lane: usize, step: Matrix) {
         let stored =
             [[0, 1], [2, 3]].map(|row| row.map(|i| f64::from(self.hot[STEP + i][place(STEP + i, lane)])));
@@ -266,7 +274,8 @@ pub fn design_group(
     Ok(group)
 }
 
-/// Designs the groups of a body, 16 modes each in their order; modes at or above Nyquist are silent.
+/// Designs the groups of a body, 16 modes each in their order; modes at or above Nyquist are
+/// silent.
 ///
 /// # Errors
 /// Each group names the field that is out of range.
@@ -278,7 +287,8 @@ pub fn design_groups(
     modes.chunks(LANES).map(move |chunk| design_group(chunk, sample_rate_hz, options))
 }
 
-/// Puts the slowest decays first, as the sleep of a [`super::ModalBank`] wants them; allocates nothing.
+/// Puts the slowest decays first, as the sleep of a [`super::ModalBank`] wants them; allocates
+/// nothing.
 pub fn sort_by_decay(modes: &mut [Mode]) {
     modes.sort_unstable_by(|a, b| {
         a.decay_per_s.total_cmp(&b.decay_per_s).then(a.frequency_hz.total_cmp(&b.frequency_hz))

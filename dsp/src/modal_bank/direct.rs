@@ -1,7 +1,8 @@
-//! Direct feed-through: the share of an input that reaches the outputs of its own turn without passing the states.
+//! Direct feed-through: the share of an input that reaches the outputs of its own turn without
+//! passing the states.
 //!
-//! The same for all modes together, so it costs nothing a mode: the states of a turn's beginning do not know yet what is
-//! heard in it, and h₀…h₃, summed over the modes, are all that is missing.
+//! The same for all modes together, so it costs nothing a mode: the states of a turn's beginning do
+//! not know yet what is heard in it, and h₀…h₃, summed over the modes, are all that is missing.
 #![allow(unsafe_code)]
 
 use super::LANES;
@@ -39,7 +40,8 @@ impl Direct {
         direct
     }
 
-    /// Adds its share to the outputs of the turns that a chunk touches, and keeps what a turn that is cut needs.
+    /// Adds its share to the outputs of the turns that a chunk touches, and keeps what a turn that
+    /// is cut needs.
     #[inline(always)]
     pub fn add(
         &self,
@@ -63,8 +65,8 @@ impl Direct {
         }
     }
 
-    /// Some samples of a turn, whose outputs `heard` are, and what they send to the turn's later ones: the oldest first, so
-    /// that a cut changes no bit.
+    /// Some samples of a turn, whose outputs `heard` are, and what they send to the turn's later
+    /// ones: the oldest first, so that a cut changes no bit.
     fn add_cut(
         &self,
         inputs: &[Input<'_>],
@@ -136,7 +138,8 @@ fn later<const BY: usize>(sent: [f32; TURN]) -> [f32; TURN] {
 #[inline(always)]
 unsafe fn gained<T: Set, const P: usize>(token: T, groups: &[ModeGroup], gains: &[LaneGains]) -> [f32; TURN] {
     let mut rows = [Row([0.0; LANES]); 1 + SUMS];
-    // SAFETY: every pointer goes to lane p · LEN, or where it lies, of an array of LANES = P · LEN values.
+    // SAFETY: every pointer goes to lane p · LEN, or where it lies, of an array of LANES = P · LEN
+    // values.
     unsafe {
         for p in 0..P {
             let lane = p * len::<T>();

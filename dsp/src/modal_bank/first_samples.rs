@@ -1,8 +1,9 @@
 //! The first samples of a strike, which a bank behind an impulse ring leaves out.
 //!
-//! The ring spreads a pulse over four samples ([`crate::hertz`]), and the bank sounds two samples late
-//! ([`super::GroupOptions::impulse_kernel_compensation`]). From four samples after the contact on nothing is missing; before, part of
-//! the spread pulse is still to come, and a mode rises through the kernel instead of beginning two samples after the contact:
+//! The ring spreads a pulse over four samples ([`crate::hertz`]), and the bank sounds two samples
+//! late ([`super::GroupOptions::impulse_kernel_compensation`]). From four samples after the contact
+//! on nothing is missing; before, part of the spread pulse is still to come, and a mode rises
+//! through the kernel instead of beginning two samples after the contact:
 //!
 //! ```text
 //! y(n) = Σₖ x(k) h'(n − k) + ∫ F(t) E(n − t₀ − t) dt        E(u) = h(u − 2) − Σⱼ β³(u − 2 − j) h'(j),   0 ≤ j ≤ u < 4
@@ -15,9 +16,10 @@
 //! | h, h' | response of all modes to an impulse, 0 before it, and of the compensated ones with their direct terms: the bank's |
 //! | E | [`FirstSamples`]: a polynomial for each of its four samples, and its moments |
 //!
-//! What it brings (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10 µs contact, rms over 50 ms) to
-//! 14 % (the same with a tenth of the ringing) from the response of the equation, and are 0.03 %. What is left
-//! is the ring's: modes above 0.4 of the rate hear their image of contacts shorter than a sample.
+//! What it brings (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10
+//! µs contact, rms over 50 ms) to 14 % (the same with a tenth of the ringing) from the response of
+//! the equation, and are 0.03 %. What is left is the ring's: modes above 0.4 of the rate hear their
+//! image of contacts shorter than a sample.
 
 use super::design::{GroupOptions, Pole};
 use crate::DesignError;
@@ -44,8 +46,8 @@ const GAUSS: [(f64, f64); 6] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170_3),
 ];
 
-/// E of some modes at the Chebyshev nodes of each sample; what [`FirstSamples`] are made from where several places of a body
-/// share its modes.
+/// E of some modes at the Chebyshev nodes of each sample; what [`FirstSamples`] are made from where
+/// several places of a body share its modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MissingSamples([[f64; TERMS]; REACH]);
 
@@ -95,7 +97,7 @@ impl MissingSamples {
     }
 }
 
-/// What is missing of the response to an impulse of 1 N·s at one place of a body.
+/// Deficit of the response to an impulse of 1 N·s at one place of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstSamples {
     /// E over each sample, in Chebyshev polynomials.
@@ -108,7 +110,8 @@ impl FirstSamples {
     /// Nothing is missing: a body without modes.
     pub const NOTHING: Self = Self { pieces: [[0.0; TERMS]; REACH], moments: [0.0; POWERS] };
 
-    /// For a bank designed from these modes with [`GroupOptions::IMPULSE_RING`]; modes at or above Nyquist are silent.
+    /// For a bank designed from these modes with [`GroupOptions::IMPULSE_RING`]; modes at or above
+    /// Nyquist are silent.
     ///
     /// # Errors
     /// Names the field that is out of range.
@@ -132,8 +135,9 @@ impl FirstSamples {
         pieces.map(part).sum()
     }
 
-    /// Adds what is missing of a strike to `ring`, the outputs of the coming samples at index sample & (length − 1), for a
-    /// pulse that [`HertzPulse::deposit`] lays into a ring as long with the same onset.
+    /// Adds what is missing of a strike to `ring`, the outputs of the coming samples at index
+    /// sample & (length − 1), for a pulse that [`HertzPulse::deposit`] lays into a ring as long
+    /// with the same onset.
     pub fn deposit(
         &self,
         pulse: &HertzPulse,
@@ -184,7 +188,8 @@ impl FirstSamples {
         sum
     }
 
-    /// The same where the pulse covers all of E: Σ (−2/length)ᵏ mₖ/k! p⁽ᵏ⁾, powers of x at two samples back.
+    /// Deficit where the pulse covers all of E: Σ (−2/length)ᵏ mₖ/k! p⁽ᵏ⁾, powers of x at two
+    /// samples back.
     fn inside(&self, length: f64) -> [f64; POWERS] {
         let mut derivative: [f64; POWERS] =
             core::array::from_fn(|i| if i % 2 == 0 { CENTRED_SHAPE[i / 2] } else { 0.0 });

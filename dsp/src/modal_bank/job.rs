@@ -10,7 +10,7 @@ pub const MAX_INPUTS: usize = 64;
 pub struct Input<'a> {
     /// Impulse of each sample, N·s.
     pub impulses: &'a [f32],
-    /// What each lane takes from it, one entry a group ([`super::lane_gains`]).
+    /// Gain of each lane from it, one entry a group ([`super::lane_gains`]).
     pub gains: &'a [LaneGains],
 }
 
@@ -45,7 +45,7 @@ impl Job<'_> {
 /// Some samples within one turn of the grid.
 #[derive(Clone, Copy)]
 pub(super) struct Chunk {
-    /// Where in the block it begins.
+    /// Place in the block at which it begins.
     pub at: usize,
     pub len: usize,
     /// Which sample of a turn it begins with.

@@ -7,14 +7,14 @@ use super::walk::walk;
 use super::{LANES, sleep};
 use crate::simd::{Level, Set, at_level};
 
-/// What the bank does on one level.
+/// Operations of the bank on one level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Kernel(pub Level);
 
 impl Kernel {
     /// Adds the bank's response to `impulses_n_s` to `out`; sample 0 of both is the absolute sample
-    /// `first_sample`, which goes on where the last call ended. Every lane hears the one input at gain 1. Slices of unequal length are used as far
-    /// as the shortest reaches.
+    /// `first_sample`, which goes on where the last call ended. Every lane hears the one input at
+    /// gain 1. Slices of unequal length are used as far as the shortest reaches.
     pub(super) fn render(
         self,
         first_sample: u64,
@@ -27,8 +27,9 @@ impl Kernel {
         self.walk(first_sample, groups, states, Feed { inputs: &input, shared: true }, out);
     }
 
-    /// As [`Kernel::render`] for up to [`MAX_INPUTS`] inputs (more are not heard), each with a gain for every
-    /// lane. Two inputs cost two to three more operations a mode and sample than the shared one.
+    /// As [`Kernel::render`] for up to [`MAX_INPUTS`] inputs (more are not heard), each with a gain
+    /// for every lane. Two inputs cost two to three more operations a mode and sample than the
+    /// shared one.
     pub(super) fn render_mixed(
         self,
         first_sample: u64,
@@ -67,21 +68,24 @@ impl Kernel {
         at_level!(self.0, token => walk_by_width(token, first_sample, &mut job, out));
     }
 
-    /// Puts lanes whose amplitude is below `threshold` (output units) exactly to rest and returns how
-    /// many leading groups still ring; the rest need no rendering until the next input. Lanes that
-    /// hold no finite number are put to rest as well.
+    /// Puts lanes whose amplitude is below `threshold` (output units) exactly to rest and returns
+    /// how many leading groups still ring; the rest need no rendering until the next input. Lanes
+    /// that hold no finite number are put to rest as well.
     ///
-    /// Call it at absolute multiples of [`super::GRID_SAMPLES`], or the output depends on the split into blocks.
+    /// Call it at absolute multiples of [`super::GRID_SAMPLES`], or the output depends on the split
+    /// into blocks.
     pub(super) fn settle(self, groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
         at_level!(self.0, _token => sleep::settle(groups, states, threshold))
     }
 }
 
-/// Cuts groups into vectors of the token's width; how many groups at most go at once is a matter of registers.
+/// Cuts groups into vectors of the token's width; how many groups at most go at once is a matter of
+/// registers.
 #[inline(always)]
 #[allow(unsafe_code)]
 fn walk_by_width<T: Set>(token: T, first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
-    // SAFETY: `out` is no longer than any input, there is a group, and there are states and gains of all.
+    // SAFETY: `out` is no longer than any input, there is a group, and there are states and gains
+    // of all.
     unsafe {
         match LANES / len::<T>() {
             1 => walk::<T, 1, 4>(token, first_sample, job, out),

@@ -1,9 +1,9 @@
 //! Changing a ringing group's modes without a jump and without energy from nowhere.
 //!
-//! The output of a lane that rings freely is the imaginary part of a phasor that every sample turns by
-//! R e^(iθ). On a change the phasor is kept: the sound goes on at the same level and phase, with the
-//! new frequency and decay from the next sample. Kept as they are, the bare states of a delta form gain 58 dB
-//! when the frequency jumps by 1.5 every 64 samples.
+//! The output of a lane that rings freely is the imaginary part of a phasor that every sample turns
+//! by R e^(iθ). On a change the phasor is kept: the sound goes on at the same level and phase, with
+//! the new frequency and decay from the next sample. Kept as they are, the bare states of a delta
+//! form gain 58 dB when the frequency jumps by 1.5 every 64 samples.
 
 use super::LANES;
 use super::design::{GroupState, ModeGroup};
@@ -31,8 +31,8 @@ impl Phasor {
     }
 }
 
-/// Carries `state` from the coefficients `old` to `new`, lane by lane. A lane that is silent before or
-/// after comes to rest.
+/// Carries `state` from the coefficients `old` to `new`, lane by lane. A lane that is silent before
+/// or after comes to rest.
 pub(super) fn retune(old: &ModeGroup, new: &ModeGroup, state: &mut GroupState) {
     for lane in 0..LANES {
         let (from, to) = (Phasor::read(old, lane), Phasor::read(new, lane));

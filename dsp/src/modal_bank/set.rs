@@ -15,13 +15,13 @@ use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use fearless_simd::SimdBase;
 
-/// What a loop is compiled for: a number of gained inputs, any number of them, or the shared input (apart for the
-/// first set, so that its rows begin at nothing without a branch).
+/// Variants that a loop is compiled for: a number of gained inputs, any number of them, or the
+/// shared input (apart for the first set, so that its rows begin at nothing without a branch).
 pub(super) const ANY: usize = usize::MAX;
 pub(super) const SHARED: usize = usize::MAX - 1;
 pub(super) const SHARED_FIRST: usize = 0;
 
-/// What vector `p` of group `s` of a set hears in sample `at`.
+/// Input of vector `p` of group `s` of a set in sample `at`.
 ///
 /// # Safety
 /// As [`inputs`]; `at` is a sample of every input.
@@ -50,7 +50,7 @@ unsafe fn heard<T: Set, const K: usize>(
     }
 }
 
-/// What the sets before this one sent to a turn: one vector column of [`TurnSums`].
+/// Sums that the sets before this one sent to a turn: one vector column of [`TurnSums`].
 ///
 /// # Safety
 /// There are [`len`] lanes from `lane` on; `turn` is written unless this is the
@@ -87,7 +87,8 @@ unsafe fn keep<T: Set>(turn: &mut MaybeUninit<TurnSums>, lane: usize, sums: [Vec
 /// The coefficients of `S` groups, [`HOT`] vectors for each vector of modes.
 struct Coefficients<'a, T: Set, const P: usize, const S: usize> {
     token: T,
-    /// Where the first lane lies in coefficient 0 of the first group, and in coefficient 1 but for the 16 lanes between.
+    /// Place of the first lane in coefficient 0 of the first group, and in coefficient 1 but for
+    /// the 16 lanes between.
     lanes: [*const f32; 2],
     groups: PhantomData<&'a [ModeGroup]>,
     /// Only where they are kept.
@@ -100,7 +101,8 @@ impl<'a, T: Set, const P: usize, const S: usize> Coefficients<'a, T, P, S> {
     #[inline(always)]
     unsafe fn new(token: T, groups: &'a [ModeGroup], lane: usize) -> Self {
         let first = groups.as_ptr().cast::<f32>();
-        // One register each: an address of a base and an index costs another operation at every use.
+        // One register each: an address of a base and an index costs another operation at every
+        // use.
         let lanes = [0, 1].map(|i| black_box(first.wrapping_add(place(i, lane))));
         // SAFETY: the caller's promise.
         unsafe {
@@ -148,7 +150,7 @@ impl<'a, T: Set, const P: usize, const S: usize> Coefficients<'a, T, P, S> {
     }
 }
 
-/// What `S` groups remember, v and w.
+/// State of `S` groups, v and w.
 struct States<T: Set, const P: usize, const S: usize> {
     v: [[Vector<T>; P]; S],
     w: [[Vector<T>; P]; S],
@@ -224,7 +226,8 @@ impl<T: Set, const P: usize, const S: usize> States<T, P, S> {
     }
 }
 
-/// `S` groups of `P` vectors, four samples a turn; each row of sums receives the groups in their order.
+/// `S` groups of `P` vectors, four samples a turn; each row of sums receives the groups in their
+/// order.
 ///
 /// # Safety
 /// As [`inputs`].
@@ -297,8 +300,9 @@ pub(super) unsafe fn set<T: Set, const P: usize, const S: usize, const K: usize>
     }
 }
 
-/// What the modes hear in a turn of which the block has only `count` samples, from `phase` on, the first of them being
-/// sample `at` of the block: when they complete the turn, the states move on; until then it is kept.
+/// Inputs of the modes in a turn of which the block has only `count` samples, from `phase` on, the
+/// first of them being sample `at` of the block: when they complete the turn, the states move on;
+/// until then it is kept.
 ///
 /// # Safety
 /// As [`set`].
@@ -329,7 +333,8 @@ unsafe fn cut<T: Set, const P: usize, const S: usize, const K: usize>(
                     z.step(s, p, by, [[a, a + b], [c, c + d]]);
                     hears = [Vector::<T>::splat(token, 0.0); TURN];
                 }
-                // Not by value: an iterator that owns the vectors lies across their alignment, and waits for itself.
+                // Not by value: an iterator that owns the vectors lies across their alignment, and
+                // waits for itself.
                 for i in 0..TURN - 1 {
                     store::<T>(hears[i], pending[i].as_mut_ptr().add(lane));
                 }

@@ -1,4 +1,5 @@
-//! Shedding: in which order a body's modes stand, so that a machine that is too slow leaves out those that nobody would miss.
+//! Shedding: in which order a body's modes stand, so that a machine that is too slow leaves out
+//! those that nobody would miss.
 //!
 //! ```text
 //! groups that hear at level 1:  ⌈A(S) / 16⌉, at most G − ⌊2 G / 5⌋, at least one
@@ -6,13 +7,16 @@
 //! modes on one side of a level: by importance (masking), and among themselves by how long they ring
 //! ```
 //!
-//! Importance is that of [`crate::masking`]. Where tables are dense the level leaves out most of the work and nobody hears it (5 of 16 groups
-//! are left, 59 % of the bank's time is saved). Where nothing hides anything it still takes two fifths, because a machine that is late has to
-//! be helped. Where that is more than the model hides, what is heard goes on by the model, or by how long it rings, whichever keeps more of
-//! the power: where the loudest stand close the model hides each by the others until most are gone (256 modes of equal spacing, struck:
-//! −6.3 dB), and where weak ones are spread it keeps more. A finer ladder saved nothing: levels of 0, −6 and −12 dB took 4, 3 and 3 of those
-//! 16 groups where this one takes 5. Of a body with more than [`RANKED`] modes those that stick out most over the threshold in quiet are
-//! ranked, and the others stand behind them, hidden by those or not.
+//! Importance is that of [`crate::masking`]. Where tables are dense the level leaves out most of
+//! the work and nobody hears it (5 of 16 groups are left, 59 % of the bank's time is saved). Where
+//! nothing hides anything it still takes two fifths, because a machine that is late has to be
+//! helped. Where that is more than the model hides, what is heard goes on by the model, or by how
+//! long it rings, whichever keeps more of the power: where the loudest stand close the model hides
+//! each by the others until most are gone (256 modes of equal spacing, struck: −6.3 dB), and where
+//! weak ones are spread it keeps more. A finer ladder saved nothing: levels of 0, −6 and −12 dB
+//! took 4, 3 and 3 of those 16 groups where this one takes 5. Of a body with more than [`RANKED`]
+//! modes those that stick out most over the threshold in quiet are ranked, and the others stand
+//! behind them, hidden by those or not.
 
 use super::{LANES, ringing_s};
 use crate::masking::{Ranked, audible_count, perceptual_order};
@@ -21,16 +25,17 @@ use crate::mode::Mode;
 /// Levels of modes left out: none, and what is not missed.
 pub const MODE_LEVELS: usize = 2;
 
-/// Sound pressure level of the loudest mode where nobody knows it, dB: speech at one metre, and where dense tables were compared.
+/// Sound pressure level of the loudest mode where nobody knows it, dB: speech at one metre, and
+/// where dense tables were compared.
 pub const LOUDEST_DB_SPL: f64 = 70.0;
 
-/// How far below what hides it a mode is that goes at each level, dB.
+/// Distance of a mode below what hides it that goes at each level, dB.
 pub const SAFETY_DB: [f64; MODE_LEVELS] = [f64::INFINITY, 6.0];
 
 /// Modes that are ranked by what hides them: the time grows with their square.
 pub const RANKED: usize = 512;
 
-/// How many leading groups hear what strikes a bank at each level of modes left out.
+/// Number of leading groups that are driven at each level of modes left out.
 pub type SheddingLevels = [usize; MODE_LEVELS];
 
 /// The most groups that hear at a level.
@@ -38,8 +43,9 @@ const fn most_at(level: usize, groups: usize) -> usize {
     if level == 0 { groups } else { groups - 2 * groups / 5 }
 }
 
-/// Puts modes in the order in which a bank is best built of them, where impulses of about `impulse_n_s` strike it and the loudest mode is at
-/// `loudest_db_spl`; tells how many groups of it hear at each level. `order` has a place for each mode.
+/// Puts modes in the order in which a bank is best built of them, where impulses of about
+/// `impulse_n_s` strike it and the loudest mode is at `loudest_db_spl`; tells how many groups of it
+/// hear at each level. `order` has a place for each mode.
 ///
 /// A body of one group stays in the order of ringing.
 pub fn shedding_order(
@@ -80,7 +86,8 @@ pub fn shedding_order(
     levels
 }
 
-/// Whether the `kept` modes that ring longest hold more than the first `kept`: of a strike's power and of a stroke's, whichever suffers more.
+/// Tests whether the `kept` modes that ring longest hold more than the first `kept`: of a strike's
+/// power and of a stroke's, whichever suffers more.
 fn ringing_keeps_more(modes: &[Mode], among: &[Ranked], kept: usize, rings: impl Fn(&Ranked) -> f64) -> bool {
     let holds = |of: &mut dyn Iterator<Item = &Ranked>| {
         of.fold([0.0; 2], |[struck, stroked], ranked| {
@@ -202,13 +209,15 @@ mod tests {
             std::println!("{count} modes: {:.0} ms, groups at each level {levels:?}", 1e3 * least_s);
             (least_s, levels)
         };
-        // 4096 take 45 ms on a quiet machine, and twenty times as long where an emulator runs this: growth is the same on both.
+        // 4096 take 45 ms on a quiet machine, and twenty times as long where an emulator runs this:
+        // growth is the same on both.
         let ((few_s, _), (many_s, levels)) = (timed(512), timed(4096));
         assert!(many_s < 24.0 * few_s, "{few_s} s, {many_s} s");
         assert!(levels[1] < levels[0] / 2, "most are hidden: {levels:?}");
     }
 
-    /// Group-seconds that a bank in this order is awake after one strike: groups sleep from the end of each section.
+    /// Group-seconds that a bank in this order is awake after one strike: groups sleep from the end
+    /// of each section.
     fn awake_s(modes: &[Mode], order: &[usize], levels: &SheddingLevels, impulse_n_s: f64) -> f64 {
         let groups: Vec<f64> = order
             .chunks(LANES)

@@ -6,8 +6,8 @@ use crate::mode::Mode;
 /// Amplitudes beyond this are no vibration but a broken state, which is put to rest.
 const ABSURD_AMPLITUDE: f32 = 1e15;
 
-/// −160 dB of full scale for a bank whose output is full scale at 1. A quiet stroke peaks near 1e-4: at
-/// −120 dB of full scale its modes fell asleep audibly, 40 dB below the stroke.
+/// −160 dB of full scale for a bank whose output is full scale at 1. A quiet stroke peaks near
+/// 1e-4: at −120 dB of full scale its modes fell asleep audibly, 40 dB below the stroke.
 pub const SLEEP_AMPLITUDE: f32 = 1e-8;
 
 /// See [`Kernel::settle`].
@@ -45,11 +45,12 @@ pub(super) fn energy(group: &ModeGroup, state: &GroupState) -> f32 {
     sum
 }
 
-/// How long a mode rings until it is below [`SLEEP_AMPLITUDE`], s, once an impulse of `impulse_n_s` has struck it; below
-/// 0 when it never gets there, infinite when it does not decay.
+/// Time until a mode is below [`SLEEP_AMPLITUDE`], s, once an impulse of `impulse_n_s` has struck
+/// it; below 0 when it never gets there, infinite when it does not decay.
 ///
-/// Groups of modes in falling order of it fall asleep from the end and together: on synthetic bodies of 100 modes
-/// they take 5–35 % less work than in order of decay alone, and what goes first under load sounds less.
+/// Groups of modes in falling order of it fall asleep from the end and together: on synthetic
+/// bodies of 100 modes they take 5–35 % less work than in order of decay alone, and what goes first
+/// under load sounds less.
 #[must_use]
 pub fn ringing_s(mode: &Mode, impulse_n_s: f64) -> f64 {
     let nepers = libm::log(mode.amplitude.abs() * impulse_n_s / f64::from(SLEEP_AMPLITUDE));

@@ -12,7 +12,8 @@ use fearless_simd::prelude::*;
 #[repr(C, align(64))]
 pub(super) struct Row(pub [f32; LANES]);
 
-/// What all modes send to a turn, lane by lane: the sums of the products with the coefficients at [`super::design::OUT`].
+/// Sums that all modes send to a turn, lane by lane: of the products with the coefficients at
+/// [`super::design::OUT`].
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub(super) struct TurnSums(pub [Row; SUMS]);
@@ -27,9 +28,11 @@ pub(super) fn outputs([last, one, minus, two, first]: [f32; SUMS]) -> [f32; TURN
     [last + two + even, 2.0 * two + odd, 4.0 * two + even, 8.0 * two + odd + first]
 }
 
-/// The sum over all lanes of the outputs of a turn, each in the order of [`sum_row`]: eight lanes at a time, then neighbours.
+/// The sum over all lanes of the outputs of a turn, each in the order of [`sum_row`]: eight lanes
+/// at a time, then neighbours.
 ///
-/// Products with powers of two are exact, so that it does not matter whether they are rounded before the sum.
+/// Products with powers of two are exact, so that it does not matter whether they are rounded
+/// before the sum.
 #[inline(always)]
 pub(super) fn samples<T: Set>(token: T, turn: &TurnSums) -> [f32; TURN] {
     let half = |row: &Row, from: usize| f32x8::from_slice(token, &row.0[from..from + LANES / 2]);
@@ -45,7 +48,8 @@ pub(super) fn samples<T: Set>(token: T, turn: &TurnSums) -> [f32; TURN] {
     (low + high).to_array()
 }
 
-/// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
+/// The one order of summation: halves onto each other, then neighbours, then neighbours, then
+/// halves.
 #[inline(always)]
 pub(super) fn sum_row(row: &Row) -> f32 {
     sum_halves(from_fn(|l| row.0[l] + row.0[l + 8]))

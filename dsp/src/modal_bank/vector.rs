@@ -10,18 +10,18 @@ use fearless_simd::prelude::*;
 /// A few modes side by side.
 pub(super) type Vector<T> = <T as Simd>::f32s;
 
-/// How many they are; divides [`LANES`].
+/// Number of them; divides [`LANES`].
 pub(super) const fn len<T: Set>() -> usize {
     <Vector<T> as SimdBase<T>>::LEN
 }
 
-/// Whether coefficients are read once a chunk, into registers or the stack; otherwise every use reads the group, which
-/// is faster where it is one operand of the multiplication.
+/// True where coefficients are read once a chunk, into registers or the stack; otherwise every use
+/// reads the group, which is faster where it is one operand of the multiplication.
 pub(super) const fn keeps_coefficients<T: Set>() -> bool {
     len::<T>() != 8
 }
 
-/// How many groups go best at once.
+/// Number of groups that go best at once.
 pub(super) const fn groups_at_once<T: Set>() -> usize {
     if len::<T>() == LANES { 3 } else { 4 }
 }
@@ -68,7 +68,8 @@ pub(super) unsafe fn load_placed<T: Set>(token: T, hot: &[Lanes; HOT], i: usize,
 #[inline(always)]
 pub(super) unsafe fn store<T: Set>(x: Vector<T>, to: *mut f32) {
     const { assert!(size_of::<Vector<T>>() == len::<T>() * size_of::<f32>()) }
-    // SAFETY: the caller's promise; a vector lies in memory as its lanes do, and no alignment is asked for.
+    // SAFETY: the caller's promise; a vector lies in memory as its lanes do, and no alignment is
+    // asked for.
     unsafe { to.cast::<Vector<T>>().write_unaligned(x) }
 }
 
@@ -78,8 +79,8 @@ pub(super) fn mul_add<T: Set>(x: Vector<T>, by: Vector<T>, plus: Vector<T>) -> V
     if T::FUSED { x.mul_add(by, plus) } else { x * by + plus }
 }
 
-/// The same for a large `x` and small `plus`. Where products are rounded apart, that of the part of `by` beyond
-/// 1 is, which is exact from 0.5 on.
+/// Product for a large `x` and small `plus`. Where products are rounded apart, that of the part of
+/// `by` beyond 1 is, which is exact from 0.5 on.
 #[inline(always)]
 pub(super) fn mul_add_near_one<T: Set>(token: T, x: Vector<T>, by: Vector<T>, plus: Vector<T>) -> Vector<T> {
     if T::FUSED {

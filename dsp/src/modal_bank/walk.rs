@@ -38,8 +38,8 @@ pub(super) unsafe fn walk<T: Set, const P: usize, const MAX: usize>(
         job.add_pairs(chunk);
         let mut turns = [[0.0; TURN]; TURNS];
         let turns = &mut turns[..(chunk.phase + len).div_ceil(TURN)];
-        // SAFETY: `at + len` is inside every input. The first set writes the sums of every turn, and there is one. So
-        // they may be read as what they are, in the same memory.
+        // SAFETY: `at + len` is inside every input. The first set writes the sums of every turn,
+        // and there is one. So they may be read as what they are, in the same memory.
         unsafe {
             sets::<T, P, MAX>(token, job, chunk, &mut sums[..turns.len()]);
             let written = core::slice::from_raw_parts(sums.as_ptr().cast::<TurnSums>(), turns.len());
@@ -55,8 +55,8 @@ pub(super) unsafe fn walk<T: Set, const P: usize, const MAX: usize>(
     }
 }
 
-/// Cuts the groups into sets of nearly equal size, at most `MAX` each: a set that is too small waits
-/// for its own results, one that is too large spills its registers.
+/// Cuts the groups into sets of nearly equal size, at most `MAX` each: a set that is too small
+/// waits for its own results, one that is too large spills its registers.
 ///
 /// # Safety
 /// As [`walk`]; `turns` are those the chunk touches.
@@ -92,7 +92,8 @@ unsafe fn sets<T: Set, const P: usize, const MAX: usize>(
 /// Most vectors at once: more have no room for their states beside the sums.
 const MOST_VECTORS: usize = 4;
 
-/// Whole groups where there is room for all their vectors; otherwise the first lanes of all, then the next.
+/// Whole groups where there is room for all their vectors; otherwise the first lanes of all, then
+/// the next.
 ///
 /// # Safety
 /// As [`sets`]; there are `S` groups from `from` on.

@@ -1,11 +1,12 @@
-//! What a set of instructions is beyond the vectors of `fearless_simd`: how it rounds, and the few operations that crate has no name for.
+//! Set of instructions beyond the vectors of `fearless_simd`: how it rounds, and the few operations
+//! that crate has no name for.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f64x4, u32x8};
 
 /// A set the kernels are compiled for.
 pub trait Set: Simd {
-    /// Whether a · b + c is one operation with one rounding.
+    /// True where a · b + c is one operation with one rounding.
     const FUSED: bool;
 
     /// Within each four lanes: the sums of neighbours of `a`, then those of `b`.
@@ -36,7 +37,8 @@ pub trait Set: Simd {
         ]
     }
 
-    /// Both coordinates of eight points, four a vector, in the order that [`Self::low_words`] and [`Self::high_words`] expect.
+    /// Both coordinates of eight points, four a vector, in the order that [`Self::low_words`] and
+    /// [`Self::high_words`] expect.
     #[inline(always)]
     fn points(self, from: &[[f64; 2]; 8]) -> [[f64x4<Self>; 2]; 2] {
         let part = |i: usize| f64x4::from_slice(self, &from.as_flattened()[4 * i..4 * i + 4]);
@@ -44,7 +46,8 @@ pub trait Set: Simd {
         [[x0, x1], [y0, y1]]
     }
 
-    /// The lower 32 bits of each number that [`Self::points`] has loaded, in the order of the points.
+    /// The lower 32 bits of each number that [`Self::points`] has loaded, in the order of the
+    /// points.
     #[inline(always)]
     fn low_words(self, [a, b]: [f64x4<Self>; 2]) -> u32x8<Self> {
         a.bitcast::<u32x8<Self>>().unzip_low(b.bitcast::<u32x8<Self>>())
@@ -118,7 +121,8 @@ mod x86 {
                     );
                     turn(self, rows)
                 }
-                /// The lower half of each register holds points of the first four, the upper half of the others: nothing crosses over.
+                /// The lower half of each register holds points of the first four, the upper half
+                /// of the others: nothing crosses over.
                 #[inline(always)]
                 fn points(self, from: &[[f64; 2]; 8]) -> [[f64x4<Self>; 2]; 2] {
                     fearless_simd::kernel!(

@@ -1,8 +1,8 @@
 //! Numbers side by side: the operations the micro-relief needs, for each instruction set.
 //!
-//! [`Eight`] numbers go through 256 bits (two vectors where there are 128), [`Sixteen`] through 512. Every operation is one IEEE operation
-//! a lane (never fused), or one on integers, so that every instruction set gives the same bits. All inline into a function that enables the
-//! set.
+//! [`Eight`] numbers go through 256 bits (two vectors where there are 128), [`Sixteen`] through
+//! 512. Every operation is one IEEE operation a lane (never fused), or one on integers, so that
+//! every instruction set gives the same bits. All inline into a function that enables the set.
 
 use super::Set;
 use fearless_simd::prelude::*;
@@ -26,7 +26,7 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn min(self, a: Self::Single, b: Self::Single) -> Self::Single;
     /// The larger one; b if either is no number.
     fn max(self, a: Self::Single, b: Self::Single) -> Self::Single;
-    /// Whether all lanes are equal numbers.
+    /// Tests whether all lanes are equal numbers.
     fn equal(self, a: Self::Single, b: Self::Single) -> bool;
     /// Smallest and largest lane of numbers.
     fn extremes(self, x: Self::Single) -> (f32, f32);
@@ -71,7 +71,7 @@ pub(crate) trait Vector<const N: usize>: Copy {
     /// Both coordinates of each.
     fn load_points(self, from: &[[f64; 2]; N]) -> [Self::Double; 2];
     fn add_to(self, x: Self::Single, to: &mut [f64; N]);
-    /// Whether each of four numbers is at least the one at its place in `b`.
+    /// Tests whether each of four numbers is at least the one at its place in `b`.
     fn all_reach(self, a: &[f64; 4], b: &[f64; 4]) -> bool;
 }
 
@@ -83,13 +83,13 @@ pub(crate) struct Eight<S>(pub S);
 #[derive(Clone, Copy)]
 pub(crate) struct Sixteen<S>(pub S);
 
-/// Of four numbers the least four.
+/// Least of four numbers in all four.
 #[inline(always)]
 fn four_least<S: Simd>(x: f64x4<S>) -> f64x4<S> {
     x
 }
 
-/// Of eight numbers the lesser of each and the one four places further.
+/// Lesser of each of eight numbers and the one four places further.
 #[inline(always)]
 fn eight_least<S: Simd>(x: f64x8<S>) -> f64x4<S> {
     let (low, high) = x.split();
@@ -118,7 +118,7 @@ fn eight_high<S: Set>(s: S, x: [f64x4<S>; 2]) -> u32x8<S> {
     s.high_words(x)
 }
 
-/// Whether sixteen numbers go through one register.
+/// True where sixteen numbers go through one register.
 const fn one_register<S: Set>() -> bool {
     S::f32s::LEN == 16
 }
@@ -161,7 +161,8 @@ macro_rules! vector {
         impl<S: Set> Vector<$n> for $name<S> {
             type Single = $single<S>;
             type Word = $word<S>;
-            /// Half of the lanes each, in an order that the loading of points makes and the halves of words undo.
+            /// Half of the lanes each, in an order that the loading of points makes and the halves
+            /// of words undo.
             type Double = [$double<S>; 2];
 
             #[inline(always)]
@@ -331,7 +332,8 @@ macro_rules! vector {
     };
 }
 
-/// Whether the smaller of two numbers is the second one if either is none, as on x86; elsewhere it is asked for.
+/// True where the smaller of two numbers is the second one if either is none, as on x86; elsewhere
+/// it is asked for.
 const SECOND_WINS: bool = cfg!(target_arch = "x86_64");
 
 vector!(Eight, 8, f32x8, u32x8, i32x8, f64x4, four_least, eight_points, eight_low, eight_high);

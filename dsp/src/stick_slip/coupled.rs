@@ -1,4 +1,5 @@
-//! Rub of a whole modal bank: the closed-form step of every sample, with the modes run a cell of 64 samples at a time.
+//! Rub of a whole modal bank: the closed-form step of every sample, with the modes run a cell of 64
+//! samples at a time.
 //!
 //! ```text
 //! v*[n] = ṽ[n] + Σ_i f_i U[n − i] + Σ_m g[n − m] F[m]       m: the samples of the cell before n
@@ -14,10 +15,12 @@
 //! | U, g | [`Answer`], m/s a newton |
 //! | F | [`Coupled::run`] |
 //!
-//! The modes are linear, so what a force does within its own cell is a sum over its few samples, and what it does later is in the states once the
-//! bank has heard it. So the bank is rendered once, with the forces, for the sound; before that it tells the free motion of the cell, and a force,
-//! once it is known, is added to the speeds of all later samples of the cell at once: what a sample has to wait for is the one product
-//! with the force before it. The sum is the plain step's to rounding ([`RubbedBody`](super::RubbedBody)): nothing is a sample late and nothing is
+//! The modes are linear, so what a force does within its own cell is a sum over its few samples,
+//! and what it does later is in the states once the bank has heard it. So the bank is rendered
+//! once, with the forces, for the sound; before that it tells the free motion of the cell, and a
+//! force, once it is known, is added to the speeds of all later samples of the cell at once: what a
+//! sample has to wait for is the one product with the force before it. The sum is the plain step's
+//! to rounding ([`RubbedBody`](super::RubbedBody)): nothing is a sample late and nothing is
 //! iterated.
 
 use super::{Friction, Law, RubState, Slips, Solved, Sweep, fused};
@@ -48,8 +51,9 @@ const BEYOND: usize = CELL - NEAR - WINDOW;
 const FAR: usize = (BLOCK + BEYOND).next_multiple_of(BLOCK);
 const KNOWN: usize = (LEAD + CELL + NEAR + WINDOW).next_multiple_of(BLOCK);
 
-/// A mode that sounds as the speed of a rubbed place, m/s, when it hears impulses of N·s along the motion through the taps of a force.
-/// `motion` is the product of its motions where it is pushed and where it is looked at, 1/kg.
+/// A mode that sounds as the speed of a rubbed place, m/s, when it hears impulses of N·s along the
+/// motion through the taps of a force. `motion` is the product of its motions where it is pushed
+/// and where it is looked at, 1/kg.
 ///
 /// # Errors
 /// When a frequency, a decay or the rate is outside what a mode can have.
@@ -62,7 +66,7 @@ pub fn place_speed(mode: &Mode, motion: f64, sample_rate_hz: f64) -> Result<Mode
     Ok(Mode { amplitude, phase_rad: libm::atan2(im, re), ..*mode })
 }
 
-/// How a rubbed place answers a force of one sample, m/s a newton.
+/// Response of a rubbed place to a force of one sample, m/s a newton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// U, from a lag of −4 samples on.
@@ -131,8 +135,9 @@ fn turn(now: &mut [[f64; LANES]; 2], z: &[[f64; LANES]; 2], sums: &mut [f64]) {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct Coupled {
-    /// How the place moves in the present cell with all that is known, but for the two samples just before: they come with the sample itself, m/s.
-    /// From [`LEAD`] on, so that blocks that begin [`NEAR`] samples later lie in one cache line each.
+    /// Motion of the place in the present cell with all that is known, but for the two samples just
+    /// before: they come with the sample itself, m/s. From [`LEAD`] on, so that blocks that begin
+    /// [`NEAR`] samples later lie in one cache line each.
     known_m_s: [f64; KNOWN],
     level: Level,
     state: RubState,
@@ -146,10 +151,11 @@ pub struct Coupled {
     far_m_s_n: [f64; FAR],
 }
 
-/// What the samples just before move.
+/// Motion by the samples just before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Moved {
-    /// By the sample before: these, and `slips_m_s` + `share` (t − root) along the way, where it slipped; t is known before the root.
+    /// By the sample before: these, and `slips_m_s` + `share` (t − root) along the way, where it
+    /// slipped; t is known before the root.
     all_m_s: f64,
     slips_m_s: f64,
     share: f64,
@@ -191,7 +197,7 @@ impl Coupled {
         }
     }
 
-    /// Whether it sticks at present.
+    /// Tests whether it sticks at present.
     #[must_use]
     pub fn sticks(&self) -> bool {
         self.state.sticks
@@ -228,8 +234,9 @@ impl Coupled {
         self.known_m_s[LEAD + CELL..].fill(0.0);
     }
 
-    /// The forces of the coming samples, N, from sample `first` of the cell on: `sweep` is what rubs, `struck_m_s` how the place moves because of what
-    /// has struck the bank since the cell began. Lengths: as far as the shortest reaches, within the cell.
+    /// The forces of the coming samples, N, from sample `first` of the cell on: `sweep` is what
+    /// rubs, `struck_m_s` how the place moves because of what has struck the bank since the cell
+    /// began. Lengths: as far as the shortest reaches, within the cell.
     pub fn run(&mut self, friction: &Friction, first: usize, sweep: &[Sweep], struck_m_s: &[f32]) -> &[f64] {
         let n = sweep.len().min(struck_m_s.len()).min(CELL.saturating_sub(first));
         let law = Law::new(friction, self.state.mobility_m_s_n);
@@ -242,7 +249,8 @@ impl Coupled {
         let eight = |x: &[f64]| f64x8::from_slice(token, &x[..BLOCK]);
         let (mut state, mut moved) = (self.state, self.moved);
         let answers = [eight(&self.window_m_s_n), eight(&self.window_m_s_n[BLOCK..])];
-        // What is known of the coming samples stays at hand: what comes back from memory comes late.
+        // What is known of the coming samples stays at hand: what comes back from memory comes
+        // late.
         let known = &self.known_m_s[LEAD + first..];
         let mut near_m_s: [f64; NEAR] = from_fn(|i| known[i]);
         let mut window = [eight(&known[NEAR..]), eight(&known[NEAR + BLOCK..])];
@@ -278,7 +286,8 @@ impl Coupled {
         window[1].store_slice(&mut known[NEAR + BLOCK..][..BLOCK]);
     }
 
-    /// Adds what the forces of the block before sample `at` move beyond the window: in its further half, and in what will come into it.
+    /// Adds what the forces of the block before sample `at` move beyond the window: in its further
+    /// half, and in what will come into it.
     #[inline(always)]
     fn moves_far<T: Set>(&mut self, token: T, at: usize, further: f64x8<T>) -> f64x8<T> {
         let forces_n = &self.force_n[FORCE_HISTORY + at - BLOCK..][..BLOCK];
@@ -297,7 +306,7 @@ impl Coupled {
         add(0, further)
     }
 
-    /// What the bank hears of the forces so far, from sample `first` of the cell on, N·s.
+    /// Impulses of the forces so far on the bank, from sample `first` of the cell on, N·s.
     pub fn impulses(&self, first: usize, sample_rate_hz: f64, impulse_n_s: &mut [f64]) {
         at_level!(self.level, _token => self.impulses_in(first, 1.0 / sample_rate_hz, impulse_n_s));
     }
@@ -312,9 +321,11 @@ impl Coupled {
     }
 }
 
-/// One sample, in which the place would lag `behind_m_s` behind what rubs if the two samples before had not been.
+/// One sample, in which the place would lag `behind_m_s` behind what rubs if the two samples before
+/// had not been.
 ///
-/// What slips waits for the root of the sample before and for nothing else: a product, a square, and the next root.
+/// What slips waits for the root of the sample before and for nothing else: a product, a square,
+/// and the next root.
 #[inline(always)]
 fn sample<T: Set>(
     token: T,
@@ -342,7 +353,8 @@ fn sample<T: Set>(
     };
     match solved.slips {
         Some(Slips { way, t, root }) => {
-            // (t − root) / 2g is what friction has beyond N μ_k: as good where all that counts is what it moves, and known before a quotient is.
+            // (t − root) / 2g is what friction has beyond N μ_k: as good where all that counts is
+            // what it moves, and known before a quotient is.
             let half = 0.5 * law.stiffness_n_s_m;
             let quick_n = way * fused(token, half, t - root, pressed.kinetic_n);
             let moved = Moved {
@@ -396,7 +408,7 @@ impl Pole {
         Ok(Some(Self { omega, z: [1.0 + behind, radius * sin], speed: [behind, radius * sin] }))
     }
 
-    /// What the taps of a force make of it: Σ tap z^−tap.
+    /// Response of a force through its taps: Σ tap z^−tap.
     fn taps(&self) -> Complex {
         let back = over([1.0, 0.0], self.z);
         FORCE_TAPS.iter().rev().fold([0.0; 2], |sum, tap| {

@@ -1,4 +1,5 @@
-//! Stick–slip: a rubbing contact and the modes of the body it rubs, solved together in every sample, without iteration.
+//! Stick–slip: a rubbing contact and the modes of the body it rubs, solved together in every
+//! sample, without iteration.
 //!
 //! ```text
 //! y_k ← the modes' displacement      v = Σ φ_k y_k'      F = the friction force on the body, along the motion
@@ -19,20 +20,23 @@
 //! | μ_s, μ_k, u_s | [`Friction`] | friction at rest and while sliding, and the speed that halves the difference |
 //! | v | [`Rub::body_m_s`] | speed of the rubbed place |
 //!
-//! Source: the free step, its velocity and the closed form of the coupled step as in physical models of bowed strings; the hyperbolic
-//! friction curve makes the slipping branch a quadratic. The speed of the place is that over the *coming* sample,
-//! (y⁺ − y) / h: with the textbook's central difference a contact that sticks would slip and stick in turn, and rub at the pitch of
+//! Source: the free step, its velocity and the closed form of the coupled step as in physical
+//! models of bowed strings; the hyperbolic friction curve makes the slipping branch a quadratic.
+//! The speed of the place is that over the *coming* sample, (y⁺ − y) / h: with the textbook's
+//! central difference a contact that sticks would slip and stick in turn, and rub at the pitch of
 //! the free mode.
 //!
-//! The sample in which it lets go is shared between both forces by where in it that was: without that the period of a squeal of 132 samples
-//! is 0.22 % off, with it 0.004 %. Where the friction falls smoothly from a standstill the period is right to the first
-//! order of the step: 0.3 % at 192 kHz where it falls within a few millimetres a second.
+//! The sample in which it lets go is shared between both forces by where in it that was: without
+//! that the period of a squeal of 132 samples is 0.22 % off, with it 0.004 %. Where the friction
+//! falls smoothly from a standstill the period is right to the first order of the step: 0.3 % at
+//! 192 kHz where it falls within a few millimetres a second.
 //!
-//! F (V − v) is never below 0, whatever is changed between two samples: friction takes energy and gives none.
-//! [`RubbedBody`] is the equations as they stand, [`Coupled`] the same for a whole [modal bank](crate::modal_bank).
+//! F (V − v) is never below 0, whatever is changed between two samples: friction takes energy and
+//! gives none. [`RubbedBody`] is the equations as they stand, [`Coupled`] the same for a whole
+//! [modal bank](crate::modal_bank).
 //!
-//! With a single mode and
-//! u_s → 0 the period is T = 2A/V + (2/ω)(π − atan(Aω/V)), A = N (μ_s − μ_k)/k (`dsp/tests/stick_slip.rs`).
+//! With a single mode and u_s → 0 the period is T = 2A/V + (2/ω)(π − atan(Aω/V)), A = N (μ_s −
+//! μ_k)/k (`dsp/tests/stick_slip.rs`).
 
 mod coupled;
 mod plain;
@@ -46,7 +50,7 @@ use crate::simd::Set;
 use fearless_simd::f64x2;
 use fearless_simd::prelude::*;
 
-/// What a rubbing pair is like.
+/// Properties of a rubbing pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// Friction coefficient of a contact that sticks, at least `mu_kinetic`.
@@ -59,8 +63,8 @@ pub struct Friction {
 
 impl Friction {
     /// # Errors
-    /// When a coefficient is outside [`limits::FRICTION`], the kinetic one is above the static one, or the speed is outside
-    /// [`limits::SLIP_SPEED_M_S`].
+    /// When a coefficient is outside [`limits::FRICTION`], the kinetic one is above the static one,
+    /// or the speed is outside [`limits::SLIP_SPEED_M_S`].
     pub fn checked(self) -> Result<Self, DesignError> {
         limits::FRICTION.check("mu_static", self.mu_static)?;
         Range::new(0.0, self.mu_static, "0 to 10 and at most mu_static")
@@ -70,7 +74,7 @@ impl Friction {
     }
 }
 
-/// What rubs: whether it sticks at present, and how far the rubbed place yields.
+/// State of what rubs: whether it sticks at present, and how far the rubbed place yields.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RubState {
     sticks: bool,
@@ -87,11 +91,11 @@ pub struct Rub {
     pub force_n: f64,
     /// Speed of the rubbed place, m/s.
     pub body_m_s: f64,
-    /// Whether it sticks.
+    /// True where it sticks.
     pub sticks: bool,
 }
 
-/// What holds for one sample.
+/// Constants of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sweep {
     /// Speed of what rubs, m/s.
@@ -112,7 +116,7 @@ struct Law {
     twice_slow_m_s: f64,
     /// 1/g; 0 of a place that does not yield.
     stiffness_n_s_m: f64,
-    /// What a newton that presses makes of [`Pressed`].
+    /// Effect of a pressing newton on [`Pressed`].
     held_m_s_n: f64,
     kinetic_m_s_n: f64,
     weaker_m_s: f64,
@@ -181,7 +185,7 @@ impl Pressed {
 #[derive(Debug, Clone, Copy)]
 struct Solved {
     force_n: f64,
-    /// Of a contact that slipped before as well.
+    /// Force of a contact that slipped before as well.
     slips: Option<Slips>,
 }
 
@@ -194,13 +198,14 @@ struct Slips {
 }
 
 impl RubState {
-    /// Whether it sticks at present.
+    /// Tests whether it sticks at present.
     #[must_use]
     pub fn sticks(&self) -> bool {
         self.sticks
     }
 
-    /// The friction force of a sample in which the place would lag `behind_m_s` behind what rubs if nothing rubbed it.
+    /// The friction force of a sample in which the place would lag `behind_m_s` behind what rubs if
+    /// nothing rubbed it.
     #[inline(always)]
     fn solve<T: Set>(&mut self, token: T, law: &Law, pressed: &Pressed, behind_m_s: f64) -> Solved {
         let w = behind_m_s.abs();
@@ -225,9 +230,10 @@ impl RubState {
         Solved { force_n: self.last_n, slips: Some(Slips { way, t: w + pressed.lean_m_s, root }) }
     }
 
-    /// Share of a sample during which it still stuck, −½ to ½: while it sticks the force of sample n is the one needed at that instant and acts for
-    /// half a sample before and after it. It grew along a straight line and let go at `most_n`; if that was before this sample's
-    /// share began, the last force acted too long by so much.
+    /// Share of a sample during which it still stuck, −½ to ½: while it sticks the force of sample
+    /// n is the one needed at that instant and acts for half a sample before and after it. It grew
+    /// along a straight line and let go at `most_n`; if that was before this sample's share began,
+    /// the last force acted too long by so much.
     fn held_share(&self, law: &Law, most_n: f64, behind_m_s: f64) -> f64 {
         let needed_n = behind_m_s.abs() * law.stiffness_n_s_m;
         let last_n = 1.0_f64.copysign(behind_m_s) * self.last_n;
@@ -236,8 +242,8 @@ impl RubState {
     }
 }
 
-/// The square root in the token's own instructions. `libm`'s is SSE's, which among those of AVX costs a processor a hundred cycles and more
-/// wherever it minds the mixture.
+/// The square root in the token's own instructions. `libm`'s is SSE's, which among those of AVX
+/// costs a processor a hundred cycles and more wherever it minds the mixture.
 #[inline(always)]
 fn root<T: Set>(token: T, x: f64) -> f64 {
     f64x2::splat(token, x).sqrt()[0]

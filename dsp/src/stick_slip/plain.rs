@@ -1,7 +1,7 @@
 //! Rubbed body, plainly: the modes one after the other, a sample at a time.
 //!
-//! What `Coupled` (beside) does for a whole [modal bank](crate::modal_bank) cell by cell, written as the equations of the
-//! [module](super) stand, with an energy that can be asked for.
+//! What `Coupled` (beside) does for a whole [modal bank](crate::modal_bank) cell by cell, written
+//! as the equations of the [module](super) stand, with an energy that can be asked for.
 
 use super::{Friction, Law, Rub, RubState, Sweep};
 use crate::DesignError;
@@ -28,10 +28,11 @@ pub struct RubbedModes {
 }
 
 impl RubbedModes {
-    /// How many modes one holds.
+    /// Number of modes that one holds.
     pub const LANES: usize = LANES;
 
-    /// Eight modes at one rate, at rest and not touched anywhere. Modes at or above the Nyquist frequency, and lanes beyond the modes, stay still.
+    /// Eight modes at one rate, at rest and not touched anywhere. Modes at or above the Nyquist
+    /// frequency, and lanes beyond the modes, stay still.
     ///
     /// # Errors
     /// When a frequency, a decay or the rate is outside what a mode can have.
@@ -109,7 +110,7 @@ impl<'a> RubbedBody<'a> {
         Rub { force_n, body_m_s: free_m_s + state.mobility_m_s_n * force_n, sticks: state.sticks }
     }
 
-    /// Where the modes go by themselves, and how far that moves the place, m.
+    /// Free motion of the modes, and of the place by it, m.
     #[inline]
     #[expect(clippy::needless_range_loop, reason = "a lane of several arrays at once")]
     fn free_step(&mut self) -> f64 {
@@ -124,7 +125,7 @@ impl<'a> RubbedBody<'a> {
         sums.iter().map(|x| f64::from(*x)).sum()
     }
 
-    /// What the force adds.
+    /// Motion that the force adds.
     #[inline]
     fn push(&mut self, force_n: f32) {
         for modes in self.modes.iter_mut() {
@@ -136,7 +137,8 @@ impl<'a> RubbedBody<'a> {
         }
     }
 
-    /// What the modes hold, J: kinetic over the coming sample, potential in the middle of it. Kept by modes without damping that nobody touches.
+    /// Energy of the modes, J: kinetic over the coming sample, potential in the middle of it. Kept
+    /// by modes without damping that nobody touches.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
         let mut sum = 0.0;
@@ -150,7 +152,7 @@ impl<'a> RubbedBody<'a> {
         sum
     }
 
-    /// Where the rubbed place is, m.
+    /// Place that is rubbed, m.
     #[must_use]
     pub fn displacement_m(&self) -> f64 {
         let lanes = |modes: &RubbedModes| -> f64 {

@@ -1,4 +1,5 @@
-//! A path by the most likely band-limited motion: no later than dead reckoning, and it knows how a hand speeds up and turns.
+//! A path by the most likely band-limited motion: no later than dead reckoning, and it knows how a
+//! hand speeds up and turns.
 //!
 //! ```text
 //! p(t) = c₀ + c₁ t + Σ A √S_k (a_k cos ω_k t + b_k sin ω_k t)      a_k, b_k ~ N(0, 1); c₀, c₁ as good as free
@@ -14,14 +15,17 @@
 //! | r | `Estimate::rest` | what the estimate jumps by at a report, made up smoothly: slowly in place (τ_p), at once in velocity (τᵥ) |
 //! | lag | the 30 Hz filter's delay | the same as that of the other modes |
 //!
-//! This is linear estimation of a stationary process from irregular samples (Wiener; Gaussian-process regression), with the stamps as
-//! they are: jitter costs nothing. The mean of the posterior is worked out once a report and laid down as a polynomial about the middle
-//! of the time for which it is wanted.
+//! This is linear estimation of a stationary process from irregular samples (Wiener;
+//! Gaussian-process regression), with the stamps as they are: jitter costs nothing. The mean of the
+//! posterior is worked out once a report and laid down as a polynomial about the middle of the time
+//! for which it is wanted.
 //!
-//! A finger that is said to stand while the estimate has it move stands: what it did before no longer counts, because no band holds a dead stop.
+//! A finger that is said to stand while the estimate has it move stands: what it did before no
+//! longer counts, because no band holds a dead stop.
 //!
-//! **Where it fails.** A finger that meets an edge and goes on elsewhere between two reports moves in no band: the estimate overshoots for some
-//! milliseconds. Jittered stamps of a straight stroke lead it by up to 2 ms. It is a choice for hands on smooth strokes, and not the default.
+//! **Where it fails.** A finger that meets an edge and goes on elsewhere between two reports moves
+//! in no band: the estimate overshoots for some milliseconds. Jittered stamps of a straight stroke
+//! lead it by up to 2 ms. It is a choice for hands on smooth strokes, and not the default.
 
 use super::reckoning::Belief;
 use super::{PathMode, TrajectoryDesign};
@@ -38,13 +42,15 @@ const TOP_HZ: f64 = 30.0;
 const TERMS: usize = 8;
 /// Size of ordinary motion, m: with this spectrum 0.1 m/s rms. Assumed.
 const AMPLITUDE_M: f64 = 0.0125;
-/// What places, m, and reported velocities, m/s, may err by: a game's in `f64`; rounded to `f32`; a tracker's places.
+/// Errors of places, m, and of reported velocities, m/s: a game's in `f64`; rounded to `f32`; a
+/// tracker's places.
 const NOISE: [[f64; 2]; MODELS] = [[3e-8, 3e-7], [1e-6, 1e-6], [5e-5, 1e-6]];
-/// How many of these there are.
+/// Number of these.
 const MODELS: usize = 3;
-/// How free the line under the motion is: variance of its place and of its slope (1/s), in units of the motion's own.
+/// Freedom of the line under the motion: variance of its place and of its slope (1/s), in units of
+/// the motion's own.
 const LINE: [f64; 2] = [1e2, 1e4];
-/// How soon a jump of the velocity is made up, and one of the place, s.
+/// Times in which a jump of the velocity is made up, and one of the place, s.
 const MADE_UP_S: [f64; 2] = [7e-4, 0.1];
 /// Weight of the past when the models of noise are compared …
 const PAST: f64 = 0.8;
@@ -53,10 +59,11 @@ const CLEARLY: f64 = 0.6;
 /// … and the most that one report may count, m².
 const MOST_M2: f64 = 4e-6;
 
-/// A finger that is said to stand and is estimated to be faster has stopped dead, m/s: what is left of a hand's smooth end is below.
+/// A finger that is said to stand and is estimated to be faster has stopped dead, m/s: what is left
+/// of a hand's smooth end is below.
 const DEAD_STOP_M_S: f64 = 0.02;
 
-/// What was reported, about the path's origin.
+/// Reports, about the path's origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Report {
     sample: u64,
@@ -64,7 +71,8 @@ struct Report {
     velocity_m_s: Option<[f64; 2]>,
 }
 
-/// Position as a polynomial of the time since `centre_s` after the latest report, one for each axis.
+/// Position as a polynomial of the time since `centre_s` after the latest report, one for each
+/// axis.
 type Polynomial = [[f64; TERMS]; 2];
 
 /// The estimate of one path.
@@ -75,7 +83,7 @@ pub(super) struct Estimate {
     centre_s: f64,
     /// One for each model of noise.
     polynomials: [Polynomial; MODELS],
-    /// How badly each has foretold, m².
+    /// Prediction errors of each, m².
     surprise_m2: [f64; MODELS],
     /// Place and velocity of what is still to be made up, of each axis.
     rest: [[f64; 2]; 2],
@@ -103,7 +111,8 @@ impl Estimate {
         estimate
     }
 
-    /// Another report, at the origin; `afresh` where it has nothing to do with those before. `now` is the next sample of the path.
+    /// Another report, at the origin; `afresh` where it has nothing to do with those before. `now`
+    /// is the next sample of the path.
     pub fn push(
         &mut self,
         design: &TrajectoryDesign,
@@ -155,7 +164,7 @@ impl Estimate {
         }
     }
 
-    /// That of the model of noise that has foretold best.
+    /// Prediction of the model of noise with the least error.
     fn best(&self) -> &Polynomial {
         let better = |best: usize, model: usize| {
             if self.surprise_m2[model] < CLEARLY * self.surprise_m2[best] { model } else { best }
@@ -232,7 +241,7 @@ impl Estimate {
     }
 }
 
-/// What is left of a jump of the velocity, and of the place, after a sample.
+/// Remainder of a jump of the velocity, and of the place, after a sample.
 pub(super) fn kept_a_sample(design: &TrajectoryDesign) -> [f64; 2] {
     MADE_UP_S.map(|time_s| libm::exp(-design.sample_period_s / time_s))
 }
@@ -249,7 +258,8 @@ fn wave(index: usize) -> [f64; 2] {
     [2.0 * core::f64::consts::PI * hz, 1.0 / ((1.0 + fourth(hz)) * (1.0 + fourth(fourth(hz / 15.0))))]
 }
 
-/// What each observation sees of line and waves: two numbers of the line, then cosine and sine of each wave.
+/// Part of line and waves that each observation sees: two numbers of the line, then cosine and sine
+/// of each wave.
 struct Features {
     rows: [[f64; 2 + 2 * WAVES]; OBSERVED],
     seen: [[f64; 2]; OBSERVED],
@@ -301,7 +311,8 @@ impl Features {
         self.count += 1;
     }
 
-    /// The mean of the motion given what was seen, as polynomials about a time after the latest report.
+    /// The mean of the motion given what was seen, as polynomials about a time after the latest
+    /// report.
     #[expect(clippy::needless_range_loop, reason = "indices are those of the equations")]
     fn posterior(&self, noise: [f64; 2], centre_s: f64) -> Polynomial {
         let n = self.count;

@@ -1,4 +1,5 @@
-//! Bend: how a hand's velocity is changing, from its last three reports, as far as that has foretold the reports so far.
+//! Bend: how a hand's velocity is changing, from its last three reports, as far as that has
+//! foretold the reports so far.
 //!
 //! ```text
 //! velocity(τ) = v + T (a τ + ½ j τ²)            τ ≤ 1.25 T₀ after the report, then constant
@@ -12,20 +13,22 @@
 //! | T | `trust` | 0 unless the bend has foretold the reports at least twice as well as the straight line |
 //! | T₀ | the running event period | |
 //!
-//! A hand that speeds up by 2 m/s² leaves dead reckoning by 0.3 mm between two reports at 60 Hz, a seventh of a 2 mm grating's period and more
-//! than a finger's whole path error otherwise. A finger that stops dead or meets an edge is foretold by neither, so that the trust is gone with the very report that
-//! tells of it, and the path goes on as dead reckoning does; so it is where reports are noisy, or a game's velocities do not belong to its places.
+//! A hand that speeds up by 2 m/s² leaves dead reckoning by 0.3 mm between two reports at 60 Hz, a
+//! seventh of a 2 mm grating's period and more than a finger's whole path error otherwise. A finger
+//! that stops dead or meets an edge is foretold by neither, so that the trust is gone with the very
+//! report that tells of it, and the path goes on as dead reckoning does; so it is where reports are
+//! noisy, or a game's velocities do not belong to its places.
 
 /// Weight of the past in what has been foretold.
 const PAST: f64 = 0.5;
-/// Of two ways to foretell the bent one counts where its squared error is smaller by more than this.
+/// Ratio of squared errors below which the bent one of two predictions counts.
 const CLEARLY: f64 = 4.0;
 /// Event periods for which a bend is believed.
 const BELIEVED_PERIODS: f64 = 1.25;
 /// Intervals below this are no intervals, s.
 const SHORTEST_S: f64 = 1e-5;
 
-/// What the velocity does after a report.
+/// Course of the velocity after a report.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Turn {
     /// m/s².
@@ -37,7 +40,8 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// By how much a contact is elsewhere, m, and faster, m/s, so long after the report than at constant velocity.
+    /// By how much a contact is elsewhere, m, and faster, m/s, so long after the report than at
+    /// constant velocity.
     pub fn after(&self, since_s: f64) -> [[f64; 2]; 2] {
         let bent_s = since_s.clamp(0.0, self.until_s);
         let straight_s = (since_s - bent_s).max(0.0);
@@ -50,7 +54,7 @@ impl Turn {
         [further, faster]
     }
 
-    /// Whether it changes nothing.
+    /// Tests whether it changes nothing.
     pub fn is_none(&self) -> bool {
         self.acceleration_m_s2 == [0.0; 2] && self.jerk_m_s3 == [0.0; 2]
     }
@@ -81,7 +85,8 @@ impl Bend {
         bend
     }
 
-    /// Takes a report that holds a velocity, `gap_s` and `covered_m` after the one before; how the velocity will change.
+    /// Takes a report that holds a velocity, `gap_s` and `covered_m` after the one before; how the
+    /// velocity will change.
     pub fn follow(&mut self, gap_s: f64, covered_m: [f64; 2], velocity_m_s: [f64; 2], period_s: f64) -> Turn {
         if self.known == 0 || gap_s < SHORTEST_S {
             *self = Self::begin(Some(velocity_m_s));
@@ -105,7 +110,7 @@ impl Bend {
         }
     }
 
-    /// How far each way to foretell was from what has come.
+    /// Errors of each prediction against what has come.
     fn compare(&mut self, gap_s: f64, covered_m: [f64; 2], velocity_m_s: [f64; 2]) {
         let [further, faster] = self.raw.after(gap_s);
         for (missed_m2, share) in self.missed_m2.iter_mut().zip([0.0, 1.0]) {

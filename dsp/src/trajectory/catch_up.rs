@@ -12,25 +12,28 @@
 //! | V | `own_speed_m_s` | the faster of the speeds before and after the silence |
 //! | w | `limit_m_s` | |
 //!
-//! A path that came back at once would be heard as a zip: the 30 Hz filter follows a step of s metres at up to 86 s m/s,
-//! after 100 ms without reports six times the finger's own speed. Over hills a sudden change of speed is felt as much as
-//! too much of it: hence the slow turn.
+//! A path that came back at once would be heard as a zip: the 30 Hz filter follows a step of s
+//! metres at up to 86 s m/s, after 100 ms without reports six times the finger's own speed. Over
+//! hills a sudden change of speed is felt as much as too much of it: hence the slow turn.
 
 use super::{PathPoint, TrajectoryDesign};
 
 /// Share of a contact's own speed by which the path may outrun it.
 pub(super) const HURRY: f64 = 0.35;
 
-/// Time in which a path reaches the contact's own speed, s. Chosen: over hills a hitch is then felt at most 1.9 times as strongly as the stroke.
+/// Time in which a path reaches the contact's own speed, s. Chosen: over hills a hitch is then felt
+/// at most 1.9 times as strongly as the stroke.
 const TURN_S: f64 = 0.1;
 
-/// Longest time a path takes to catch up, s: covers 0.2 s without reports, and a first report after 0.2 s. What is further away is a jump.
+/// Longest time a path takes to catch up, s: covers 0.2 s without reports, and a first report after
+/// 0.2 s. What is further away is a jump.
 const LONGEST_CATCH_UP_S: f64 = 1.0;
 
-/// Distance that is a tracker's noise and no movement, m. Assumed: twice the 50 µm of the project's bars.
+/// Distance that is a tracker's noise and no movement, m. Assumed: twice the 50 µm of the project's
+/// bars.
 const NOISE_M: f64 = 1e-4;
 
-/// What is left of a distance between a path and its reports.
+/// Remainder of a distance between a path and its reports.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct CatchUp {
     /// m; 0 once it is made up.
@@ -42,17 +45,18 @@ pub(super) struct CatchUp {
     closing_m_s: f64,
 }
 
-/// How a contact moves about a silence, m/s.
+/// Speeds of a contact about a silence, m/s.
 pub(super) struct Speeds {
     /// As it was reported before …
     pub before_m_s: [f64; 2],
     /// … and after it.
     pub now_m_s: [f64; 2],
-    /// What the path has left of it; none where the contact says that it stands, and the path is to be there as soon as may be.
+    /// Remainder of the path; none where the contact says that it stands, and the path is to be
+    /// there as soon as may be.
     pub path_m_s: Option<[f64; 2]>,
 }
 
-/// Whether a path can come back to its reports.
+/// True where a path can come back to its reports.
 pub(super) enum Distance {
     /// The filter alone makes it up without hurry.
     Small,
@@ -95,7 +99,7 @@ impl CatchUp {
         self.limit_m_s = room_m_s(self.own_speed_m_s, now_m_s).max(NOISE_M / LONGEST_CATCH_UP_S);
     }
 
-    /// Whether the path is where the reports say.
+    /// Tests whether the path is where the reports say.
     pub fn is_over(&self) -> bool {
         self.left_m == 0.0
     }
@@ -118,7 +122,7 @@ impl CatchUp {
     }
 }
 
-/// How fast a path may move besides a contact that moves at `now_m_s`.
+/// Largest speed of a path besides a contact that moves at `now_m_s`.
 fn room_m_s(own_speed_m_s: f64, now_m_s: f64) -> f64 {
     (1.0 + HURRY) * own_speed_m_s - now_m_s
 }

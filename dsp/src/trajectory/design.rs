@@ -7,7 +7,7 @@ use crate::butterworth::Butterworth;
 /// jitter of ±20 %; when an event is later still, the path is extrapolated until it comes.
 pub const HERMITE_DELAY_S: f64 = 1.25 / 60.0;
 
-/// How positions between events are made.
+/// Modes of making positions between events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PathMode {
@@ -18,11 +18,12 @@ pub enum PathMode {
     Hold,
     /// Cubic interpolation between events, [`HERMITE_DELAY_S`] late.
     Hermite,
-    /// The most likely band-limited motion given the last reports, no later than [`PathMode::Extrapolate`]: the module `band_limited`.
+    /// The most likely band-limited motion given the last reports, no later than
+    /// [`PathMode::Extrapolate`]: the module `band_limited`.
     BandLimited,
 }
 
-/// What all paths at one sample rate share.
+/// Constants of all paths at one sample rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrajectoryDesign {
     pub(super) mode: PathMode,
@@ -35,11 +36,12 @@ pub struct TrajectoryDesign {
 }
 
 impl TrajectoryDesign {
-    /// Designs the path stage. `wrap_period_m` is the distance after which the surface repeats along
-    /// u and v, ∞ where it does not: positions that differ by it are the same place.
+    /// Designs the path stage. `wrap_period_m` is the distance after which the surface repeats
+    /// along u and v, ∞ where it does not: positions that differ by it are the same place.
     ///
     /// # Errors
-    /// When the rate or the cutoff is impossible (see [`Butterworth::new`]) or a period is not above 0.
+    /// When the rate or the cutoff is impossible (see [`Butterworth::new`]) or a period is not
+    /// above 0.
     pub fn new(
         mode: PathMode,
         cutoff_hz: f64,
@@ -71,7 +73,7 @@ impl TrajectoryDesign {
         self.mode
     }
 
-    /// How far slow movements come out behind the events, seconds.
+    /// Delay of slow movements behind the events, seconds.
     #[must_use]
     pub fn lag_s(&self) -> f64 {
         let extra = match self.mode {
@@ -81,8 +83,8 @@ impl TrajectoryDesign {
         self.filter.group_delay_s() + extra
     }
 
-    /// How long a step of the input takes at the output's fastest, seconds: 1 over the impulse response's
-    /// largest value, √2 ω e^(−π/4) sin(π/4).
+    /// Duration of a step of the input at the output's fastest, seconds: 1 over the impulse
+    /// response's largest value, √2 ω e^(−π/4) sin(π/4).
     pub(super) fn step_time_s(&self) -> f64 {
         1.0 / (0.455_938 * self.filter.angular_cutoff_per_s())
     }

@@ -79,12 +79,12 @@ impl History {
         }
     }
 
-    /// Whether the delayed reading has passed the latest event.
+    /// Tests whether the delayed reading has passed the latest event.
     pub fn is_past(&self, design: &TrajectoryDesign, sample: u64) -> bool {
         self.age_of_latest(design, sample) >= 0
     }
 
-    /// Whether the path beyond the latest event has come to its end.
+    /// Tests whether the path beyond the latest event has come to its end.
     pub fn has_glided_out(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> bool {
         self.age_of_latest(design, sample) > belief.whole_samples + fall_samples(design, belief)
     }
@@ -116,7 +116,7 @@ impl History {
     }
 }
 
-/// How long a velocity falls once it is no longer wholly believed.
+/// Time in which a velocity falls once it is no longer wholly trusted.
 fn fall_samples(design: &TrajectoryDesign, belief: Belief) -> i64 {
     ((2.0 * belief.fade_s / design.sample_period_s) as i64).max(1)
 }

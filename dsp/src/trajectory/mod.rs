@@ -18,12 +18,14 @@
 //! **What we changed.** The paper holds each event's position until the next ([`PathMode::Hold`]).
 //! At 60 Hz and a constant 0.1 m/s that leaves 36 % rms velocity ripple, heard as pitch wobble.
 //! [`PathMode::Extrapolate`] feeds the same filter with dead reckoning: no ripple on clean events,
-//! under 5 % with ±20 % jitter and 50 µm noise, and half the lag (7.5 ms, the filter's own). It reckons with the change of the velocity too: a hand that
-//! reaches 90 mm in 0.55 s is followed to 1 µm rms where a straight line between reports errs by 61 µm, and a finger that stops dead is overrun as before.
-//! [`PathMode::Hermite`] interpolates instead of extrapolating, [`HERMITE_DELAY_S`] late: for offline
-//! rendering and for games that report poor velocities. [`PathMode::BandLimited`] estimates the motion from the last six reports, as a
-//! hand moves: no later than extrapolation, and within 6 dB of the best linear estimator of handwriting and drawing
-//! (`cli/tests/path_estimate.rs`, `asperity report`).
+//! under 5 % with ±20 % jitter and 50 µm noise, and half the lag (7.5 ms, the filter's own). It
+//! reckons with the change of the velocity too: a hand that reaches 90 mm in 0.55 s is followed to
+//! 1 µm rms where a straight line between reports errs by 61 µm, and a finger that stops dead is
+//! overrun as before. [`PathMode::Hermite`] interpolates instead of extrapolating,
+//! [`HERMITE_DELAY_S`] late: for offline rendering and for games that report poor velocities.
+//! [`PathMode::BandLimited`] estimates the motion from the last six reports, as a hand moves: no
+//! later than extrapolation, and within 6 dB of the best linear estimator of handwriting and
+//! drawing (`cli/tests/path_estimate.rs`, `asperity report`).
 //!
 //! The normal force runs through the same filter, held between events (interpolated in Hermite
 //! mode), and never goes below zero: the filter's 4 % undershoot would pull at the surface.
@@ -31,8 +33,9 @@
 //! A landing or a jump that no finger can make (a *teleport*) sets the filter to the state it would
 //! have had on the straight line through the event, so neither starts with a transient.
 //!
-//! A hitch of the game is no jump: the path fades while no report comes, and then makes up the distance at most
-//! 1.41 times as fast as the finger moves (`catch_up`), so that it neither zips nor steps; so does one whose first velocity had to be guessed.
+//! A hitch of the game is no jump: the path fades while no report comes, and then makes up the
+//! distance at most 1.41 times as fast as the finger moves (`catch_up`), so that it neither zips
+//! nor steps; so does one whose first velocity had to be guessed.
 //!
 //! All arithmetic is relative to the latest event's position, so a path that has run a million
 //! periods keeps its velocity; every sample depends on the samples before it alone, so any split
@@ -86,7 +89,7 @@ pub struct PathPoint {
 pub struct Trajectory {
     /// The next sample [`Trajectory::advance`] makes.
     sample: u64,
-    /// Where the coordinates of everything below are zero, metres on the unwrapped surface.
+    /// Origin of the coordinates of everything below, metres on the unwrapped surface.
     origin_m: [f64; 2],
     axes: [State; 2],
     force: State,
@@ -104,7 +107,7 @@ fn or_rest(velocity: [f64; 2]) -> [f64; 2] {
     if libm::hypot(velocity[0], velocity[1]) < REST_SPEED_M_S { [0.0; 2] } else { velocity }
 }
 
-/// Whether the filters have come to their inputs.
+/// True where the filters have come to their inputs.
 fn is_settled(input: &[f64; 3], low: [f64; 3], point: &PathPoint) -> bool {
     (low[0] - input[0]).abs().max((low[1] - input[1]).abs()) < STILL_DISTANCE_M
         && point.velocity_m_s.iter().all(|v| v.abs() < STILL_SPEED_M_S)
@@ -140,8 +143,8 @@ impl Trajectory {
         path
     }
 
-    /// From the next sample on the normal force stays at `normal_force_n` until the next event: for a contact
-    /// that fades, which would otherwise follow its own lift-off.
+    /// From the next sample on the normal force stays at `normal_force_n` until the next event: for
+    /// a contact that fades, which would otherwise follow its own lift-off.
     pub fn hold_force(&mut self, normal_force_n: f64) {
         if self.still || !(normal_force_n.is_finite() && normal_force_n >= 0.0) {
             return;
@@ -176,8 +179,8 @@ impl Trajectory {
         });
     }
 
-    /// Goes on as `before`, a path of the same contact until a jump, as far as that has learned to know its game:
-    /// the rate of its reports, and whether its zero velocities are to be believed.
+    /// Goes on as `before`, a path of the same contact until a jump, as far as that has learned to
+    /// know its game: the rate of its reports, and whether its zero velocities are to be believed.
     pub fn succeed(&mut self, before: &Self) {
         self.reckoning.keep_rate(&before.reckoning, 0.0);
         self.standstill = before.standstill;
@@ -195,8 +198,8 @@ impl Trajectory {
         self.reckoning.force_n()
     }
 
-    /// Whether the output no longer changes until the next event: at rest, at its place, force
-    /// settled. A still path need not be advanced; it catches up at the next event.
+    /// Tests whether the output no longer changes until the next event: at rest, at its place,
+    /// force settled. A still path need not be advanced; it catches up at the next event.
     #[must_use]
     pub fn is_still(&self) -> bool {
         self.still
@@ -238,7 +241,8 @@ impl Trajectory {
         self.come_to(design, (&input, low), out, end);
     }
 
-    /// Has made these points, of which the filters were given `input` for the last, and falls still if nothing moves any more; `end`: where an estimate ends.
+    /// Has made these points, of which the filters were given `input` for the last, and falls still
+    /// if nothing moves any more; `end`: where an estimate ends.
     fn come_to(
         &mut self,
         design: &TrajectoryDesign,
@@ -257,7 +261,8 @@ impl Trajectory {
         }
     }
 
-    /// Puts the most likely motion in the place of what the filters made; where it ends, from the origin.
+    /// Puts the most likely motion in the place of what the filters made; where it ends, from the
+    /// origin.
     fn estimated(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) -> Option<[f64; 2]> {
         let belief = self.reckoning.belief(design);
         let kept = band_limited::kept_a_sample(design);
@@ -271,8 +276,9 @@ impl Trajectory {
         end
     }
 
-    /// What the filters are given for the next samples, as points: places from the origin, and force. Velocities are left as they are. The points'
-    /// own memory holds them, because any other would have to be cleared for each stretch.
+    /// Inputs of the filters for the next samples, as points: places from the origin, and force.
+    /// Velocities are left as they are. The points' own memory holds them, because any other would
+    /// have to be cleared for each stretch.
     fn inputs(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
         let force_n = self.reckoning.force_n();
         match design.mode {
@@ -293,7 +299,7 @@ impl Trajectory {
         }
     }
 
-    /// Whether the input has come to its end: nothing moves it until the next event.
+    /// Tests whether the input has come to its end: nothing moves it until the next event.
     fn has_arrived(&self, design: &TrajectoryDesign) -> bool {
         match design.mode {
             PathMode::Hold => true,

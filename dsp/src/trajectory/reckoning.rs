@@ -14,11 +14,12 @@ const PERIOD_WEIGHT: f64 = 0.25;
 const BELIEVED_PERIODS: f64 = 1.5;
 /// Time constant with which it then fades, event periods …
 const FADE_PERIODS: f64 = 0.5;
-/// … and at least so long, s: most fingers go on while a game hangs, and one that has stopped glides 5 mm too far at 0.1 m/s.
-/// Chosen: after 40 ms without reports half the speed is left, after 200 ms none.
+/// … and at least so long, s: most fingers go on while a game hangs, and one that has stopped
+/// glides 5 mm too far at 0.1 m/s. Chosen: after 40 ms without reports half the speed is left,
+/// after 200 ms none.
 const LEAST_FADE_S: f64 = 0.05;
 
-/// How long a velocity is believed when no report follows.
+/// Time for which a velocity is trusted when no report follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Belief {
     /// Wholly, from its report on.
@@ -31,16 +32,17 @@ pub(super) struct Belief {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reckoning {
     sample: u64,
-    /// How far beyond its sample the event holds, samples; its position is already carried back to it.
+    /// Distance of the event beyond its sample, samples; its position is already carried back to
+    /// it.
     fraction: f64,
     velocity_m_s: [f64; 2],
-    /// How the velocity will change.
+    /// Course of the velocity.
     turn: Turn,
     force_n: f64,
     period_s: f64,
     events: u32,
     glide: Glide,
-    /// Whether it has come to rest for want of reports, and not because the game said so.
+    /// True where it has come to rest for want of reports, and not because the game said so.
     lost: bool,
 }
 
@@ -51,7 +53,7 @@ struct Glide {
     after_samples: i64,
     position_m: [f64; 2],
     velocity_m_s: [f64; 2],
-    /// What is left of the velocity after one sample.
+    /// Share of the velocity that is left after one sample.
     keep: f64,
     started: bool,
 }
@@ -120,12 +122,12 @@ impl Reckoning {
         }
     }
 
-    /// Whether nothing moves the input until the next event.
+    /// Tests whether nothing moves the input until the next event.
     pub fn is_at_rest(&self) -> bool {
         self.velocity_m_s == [0.0; 2] || (self.glide.started && self.glide.velocity_m_s == [0.0; 2])
     }
 
-    /// Whether `gap_s` after the latest event its movement is no longer believed.
+    /// Tests whether `gap_s` after the latest event its movement is no longer trusted.
     pub fn is_lost(&self, gap_s: f64, believed_s: f64) -> bool {
         self.lost || self.velocity_m_s != [0.0; 2] && gap_s > believed_s
     }
@@ -139,7 +141,7 @@ impl Reckoning {
         self.glide.after_samples = -1;
     }
 
-    /// How long the latest event's velocity is believed.
+    /// Time for which the latest event's velocity is trusted.
     pub fn belief(&self, design: &TrajectoryDesign) -> Belief {
         Belief {
             whole_samples: (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64,
@@ -147,7 +149,7 @@ impl Reckoning {
         }
     }
 
-    /// Where the input will be `gap_s` after the latest event, relative to it.
+    /// Place of the input `gap_s` after the latest event, relative to it.
     pub fn expected(&self, design: &TrajectoryDesign, gap_s: f64) -> [f64; 2] {
         let Belief { whole_samples, fade_s } = self.belief(design);
         let believed_s = whole_samples as f64 * design.sample_period_s;
@@ -180,8 +182,8 @@ impl Reckoning {
         self.glide.keep = libm::exp(-design.sample_period_s / fade_s);
     }
 
-    /// The input from `sample` on, relative to the latest event, and the force. Once the velocity is no longer believed
-    /// every sample must be asked for in turn.
+    /// The input from `sample` on, relative to the latest event, and the force. Once the velocity
+    /// is no longer believed every sample must be asked for in turn.
     #[inline]
     pub fn run(&mut self, design: &TrajectoryDesign, sample: u64, out: &mut [PathPoint]) {
         let age = sample.wrapping_sub(self.sample) as i64;

@@ -17,13 +17,14 @@ pub const UNREPORTED_SPEED_M_S: f64 = 0.5;
 /// Longest gap between events that counts towards the distance a finger may have travelled, s.
 const LONGEST_GAP_S: f64 = 0.1;
 
-/// What a game reported about one contact.
+/// Report of a game about one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathEvent {
     /// Absolute index of the sample at which it holds …
     pub sample: u64,
-    /// … and how far beyond that sample, 0 to 1 of a sample. Game time does not fall on samples: rounding it
-    /// to them is a jitter, which at 22.05 kHz and 60 events a second ripples the velocity by 0.14 %.
+    /// … and how far beyond that sample, 0 to 1 of a sample. Game time does not fall on samples:
+    /// rounding it to them is a jitter, which at 22.05 kHz and 60 events a second ripples the
+    /// velocity by 0.14 %.
     pub fraction: f64,
     /// Position on the surface along u and v, metres; may wrap or run on.
     pub position_m: [f64; 2],
@@ -33,13 +34,13 @@ pub struct PathEvent {
     pub normal_force_n: f64,
 }
 
-/// What [`Trajectory::moved`] made of an event.
+/// Result of an event for [`Trajectory::moved`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moved {
     /// The path goes on to the new position.
     Followed,
-    /// The jump was too far for a finger, or for the filter to follow after a silence: the path now starts
-    /// there. Treat it as a new contact.
+    /// The jump was too far for a finger, or for the filter to follow after a silence: the path now
+    /// starts there. Treat it as a new contact.
     Teleported,
     /// Older than the event before it, or not finite: nothing changed.
     Ignored,
@@ -63,14 +64,14 @@ pub(super) fn is_sane(event: &PathEvent) -> bool {
     numbers.iter().all(|x| x.is_finite()) && (0.0..1.0).contains(&event.fraction)
 }
 
-/// Where a contact that holds a fraction after its sample was at that sample, relative to the event.
+/// Place at that sample of a contact that holds a fraction after it, relative to the event.
 pub(super) fn carried_back(design: &TrajectoryDesign, velocity_m_s: [f64; 2], fraction: f64) -> [f64; 2] {
     velocity_m_s.map(|v| -v * fraction * design.sample_period_s)
 }
 
 impl Trajectory {
-    /// Takes a new event. Its sample is normally the next one [`Self::advance`] will make; earlier and
-    /// later stamps are carried to it along the event's velocity.
+    /// Takes a new event. Its sample is normally the next one [`Self::advance`] will make; earlier
+    /// and later stamps are carried to it along the event's velocity.
     pub fn moved(&mut self, design: &TrajectoryDesign, event: &PathEvent) -> Moved {
         if !is_sane(event) || event.sample < self.reckoning.sample() {
             return Moved::Ignored;
@@ -89,7 +90,8 @@ impl Trajectory {
             && length(seen.covered_m) < STILL_DISTANCE_M
             && velocity == self.reckoning.velocity()
         {
-            // Nothing new but the force: a game that stands reports the same instant again and again.
+            // Nothing new but the force: a game that stands reports the same instant again and
+            // again.
             self.still &= event.normal_force_n == self.reckoning.force_n();
             self.reckoning.set_force_n(event.normal_force_n);
             return Moved::Followed;
@@ -131,7 +133,8 @@ impl Trajectory {
         }
     }
 
-    /// Goes on to an event; one that `rejoins` comes after a silence that the path has not guessed well.
+    /// Goes on to an event; one that `rejoins` comes after a silence that the path has not guessed
+    /// well.
     fn go_on(
         &mut self,
         design: &TrajectoryDesign,
@@ -166,7 +169,8 @@ impl Trajectory {
         }
     }
 
-    /// How the velocity of an event will change: of a path that reckons on, where reports hold velocities.
+    /// Course of the velocity of an event: of a path that reckons on, where reports hold
+    /// velocities.
     fn turn(
         &mut self,
         design: &TrajectoryDesign,
@@ -199,8 +203,9 @@ impl Trajectory {
         Moved::Teleported
     }
 
-    /// Whether the path may be elsewhere than an event says. One that extrapolates has run on past a finger that stopped; one that
-    /// interpolates reads late enough to see it stop; the paper's, which holds, hurries at every event.
+    /// Tests whether the path may be elsewhere than an event says. One that extrapolates has run on
+    /// past a finger that stopped; one that interpolates reads late enough to see it stop; the
+    /// paper's, which holds, hurries at every event.
     fn may_part(&self, design: &TrajectoryDesign, late: bool, velocity: [f64; 2]) -> bool {
         match design.mode {
             PathMode::Extrapolate => late || velocity == [0.0; 2],
@@ -210,14 +215,14 @@ impl Trajectory {
         }
     }
 
-    /// How far from its expected position an event may be and still belong to the same stroke.
+    /// Largest distance of an event from its expected position within one stroke.
     fn reach_m(&self, reported: Option<[f64; 2]>, gap_s: f64) -> f64 {
         let now = reported.unwrap_or([UNREPORTED_SPEED_M_S, 0.0]);
         let speed = length(self.reckoning.velocity()).max(length(now));
         TELEPORT_FACTOR * speed * gap_s.min(LONGEST_GAP_S) + TELEPORT_MARGIN_M
     }
 
-    /// Whether the path has begun to lose belief in a movement for want of reports.
+    /// Tests whether the path has begun to lose trust in a movement for want of reports.
     fn is_late(&self, design: &TrajectoryDesign, event: &PathEvent, gap_s: f64) -> bool {
         let read_late_s = match design.mode {
             PathMode::Extrapolate | PathMode::Hold | PathMode::BandLimited => 0.0,
@@ -229,8 +234,8 @@ impl Trajectory {
         self.reckoning.is_lost(silence_s.max(gap_s), believed_s + read_late_s)
     }
 
-    /// How far the path's input is from the line of a new event, m, now or when the event comes into force, and how fast
-    /// both move.
+    /// Distance of the path's input from the line of a new event, m, now or when the event comes
+    /// into force, and how fast both move.
     fn part(
         &self,
         design: &TrajectoryDesign,
@@ -250,7 +255,7 @@ impl Trajectory {
         (away_m, Speeds { before_m_s: self.reckoning.velocity(), now_m_s, path_m_s })
     }
 
-    /// Where the path's input is at a sample by the reports so far, from the origin.
+    /// Place of the path's input at a sample by the reports so far, from the origin.
     fn guessed(&self, design: &TrajectoryDesign, sample: u64) -> [f64; 2] {
         if design.mode == PathMode::Hermite {
             return self.history.at(design, sample, self.reckoning.belief(design)).0;

@@ -1,23 +1,23 @@
 //! Standstill detection: whether a reported velocity of zero is believed.
 //!
-//! Some games fill in a velocity of zero because they have none. A finger that is said to rest and is found
-//! elsewhere, report after report, does not rest: from then on its velocity is estimated from its places,
-//! until a report holds another velocity than zero.
+//! Some games fill in a velocity of zero because they have none. A finger that is said to rest and
+//! is found elsewhere, report after report, does not rest: from then on its velocity is estimated
+//! from its places, until a report holds another velocity than zero.
 
-/// Way a contact may drift while every report says that it rests, m: more than a tracker's noise, less than
-/// a stroke's way between two reports at 60 Hz from 0.03 m/s on. Assumed.
+/// Way a contact may drift while every report says that it rests, m: more than a tracker's noise,
+/// less than a stroke's way between two reports at 60 Hz from 0.03 m/s on. Assumed.
 const DRIFT_AT_REST_M: f64 = 5e-4;
 
 /// The run of reports that say zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Standstill {
-    /// Whether nothing is known yet: the first report held no velocity.
+    /// True where nothing is known yet: the first report held no velocity.
     unknown: bool,
-    /// Whether the latest report said zero.
+    /// True where the latest report said zero.
     claimed: bool,
-    /// How far the contact is from where the run began, m.
+    /// Distance of the contact from where the run began, m.
     drift_m: [f64; 2],
-    /// Whether it has moved all the same.
+    /// True where it has moved all the same.
     disproved: bool,
 }
 
@@ -28,8 +28,8 @@ impl Standstill {
     }
 
     /// Takes a report, `step_m` from the one before. Returns the velocity to believe (none: to be
-    /// estimated), and whether what was believed before it was no knowledge: a missing velocity, or a zero that this
-    /// report disproves.
+    /// estimated), and whether what was believed before it was no knowledge: a missing velocity, or
+    /// a zero that this report disproves.
     pub fn weigh(&mut self, velocity_m_s: Option<[f64; 2]>, step_m: [f64; 2]) -> (Option<[f64; 2]>, bool) {
         let unknown = core::mem::take(&mut self.unknown);
         if velocity_m_s != Some([0.0; 2]) {

@@ -113,7 +113,8 @@ fn retuning_every_grid_step_adds_no_energy_and_no_jump() {
 #[test]
 fn undamped_modes_keep_their_energy_for_three_million_samples() {
     let rate = 44_100.0;
-    // From the lowest to near Nyquist; a quarter of the rate is where two samples turn a mode round.
+    // From the lowest to near Nyquist; a quarter of the rate is where two samples turn a mode
+    // round.
     let hertz =
         [30.0, 55.3, 110.0, 440.0, 997.0, 3_001.0, 7_350.0, 11_025.0, 11_026.0, 15_000.0, 20_000.0, 21_900.0];
     let modes: Vec<Mode> = hertz.iter().map(|&f| mode(f, 0.0, 1.0, 0.7)).collect();

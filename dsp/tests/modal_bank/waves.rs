@@ -78,8 +78,8 @@ fn the_bank_agrees_with_scipy() {
     }
 }
 
-/// Pitch error in cents and relative error of T60 of a rendered impulse, by comparing the phasor of the output in two
-/// windows (Hann, many periods) with that of the formula.
+/// Pitch error in cents and relative error of T60 of a rendered impulse, by comparing the phasor of
+/// the output in two windows (Hann, many periods) with that of the formula.
 fn pitch_and_t60_error(y: &[f32], m: &Mode, rate: f64) -> (f64, f64) {
     let window = (40.0 / m.frequency_hz * rate) as usize;
     let gap = y.len() - window;

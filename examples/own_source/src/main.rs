@@ -3,10 +3,12 @@
 //! ```text
 //! h(u, v) = a · cos(2πu/p) · cos(2πv/p)      p: pitch of the threads, a: half of their height
 //! ```
-//! [`Woven`] is all a source is: its properties and its heights along a path. [`Thread`] is its handle: the game thickens the threads while
-//! fingers stroke them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
+//! [`Woven`] is all a source is: its properties and its heights along a path. [`Thread`] is its
+//! handle: the game thickens the threads while fingers stroke them. [`make`] is its key in scene
+//! files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
 //!
-//! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file, then one whose threads grow.
+//! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file,
+//! then one whose threads grow.
 
 use asperity::files::FileError;
 use asperity::files::scene_file::{OwnSource, SceneFile};
@@ -30,7 +32,8 @@ struct Woven {
     pitch_m: f64,
     /// Half of the threads' height, m, as the game sets it.
     wanted_m: Arc<AtomicU64>,
-    /// The same as it is, over absolute samples: every finger feels the same at the same sample, in blocks of any length.
+    /// The same as it is, over absolute samples: every finger feels the same at the same sample, in
+    /// blocks of any length.
     amplitude_m: Fade<f64>,
     /// The sample at which the game's height was read last.
     read_at: Option<u64>,
@@ -95,8 +98,8 @@ impl HeightField for Woven {
         }
     }
 
-    /// Touches come at steps of the absolute sample grid, before that step is sampled. The first one of a step reads the game's height, for all
-    /// fingers.
+    /// Touches come at steps of the absolute sample grid, before that step is sampled. The first
+    /// one of a step reads the game's height, for all fingers.
     fn touch(&mut self, touch: &Touch) -> Reaction {
         if self.read_at != Some(touch.sample) {
             self.read_at = Some(touch.sample);

@@ -1,10 +1,12 @@
-//! A rapier3d world that is heard and felt through `asperity-rapier`: a ball is dropped, a box slides, two balls meet, a finger is dragged over
-//! a triangle mesh with texture coordinates. What the game reports is recorded, rendered again offline, and must give the same samples.
+//! A rapier3d world that is heard and felt through `asperity-rapier`: a ball is dropped, a box
+//! slides, two balls meet, a finger is dragged over a triangle mesh with texture coordinates. What
+//! the game reports is recorded, rendered again offline, and must give the same samples.
 //!
 //! ```sh
 //! cargo run --release -p asperity-rapier-contacts [FOLDER]
 //! ```
-//! writes `rapier.audio.wav`, `rapier.haptic.wav` and `rapier.jsonl` into FOLDER (default: the current one).
+//! writes `rapier.audio.wav`, `rapier.haptic.wav` and `rapier.jsonl` into FOLDER (default: the
+//! current one).
 
 mod mesh;
 
@@ -192,7 +194,8 @@ fn finger(world: &mut PhysicsWorld) -> Handles {
             .translation(Vector::new(-0.12, 0.0092, 0.0))
             .lock_rotations()
             .additional_mass(FINGER_KG),
-        // A hand is stronger than friction, which is asperity's own; let it not stop the finger here.
+        // A hand is stronger than friction, which is asperity's own; let it not stop the finger
+        // here.
         ColliderBuilder::ball(0.008)
             .density(0.0)
             .friction(0.0)

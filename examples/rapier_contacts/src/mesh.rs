@@ -1,4 +1,5 @@
-//! A rippled slab: a triangle mesh with texture coordinates, as a renderer and a physics engine share it.
+//! A rippled slab: a triangle mesh with texture coordinates, as a renderer and a physics engine
+//! share it.
 
 use rapier3d::prelude::*;
 

@@ -5,13 +5,14 @@ use asperity_dsp::mode::Mode;
 
 /// The impulse the modes are the answer to, N·s.
 const IMPULSE_N_S: f64 = 0.01;
-/// Fast and blunt, and both as hard as the engine allows: a contact of a tenth of a microsecond, a pure impulse.
+/// Fast and blunt, and both as hard as the engine allows: a contact of a tenth of a microsecond, a
+/// pure impulse.
 const SPEED_M_S: f64 = 100.0;
 const RADIUS_M: f64 = 10.0;
 const HARD: Material = Material::new(1e13, 0.3, 7850.0);
 
-/// What the renderer plays when `modes` are struck once, from `before_s` before the strike on, `count` samples and
-/// twice `before_s` more.
+/// What the renderer plays when `modes` are struck once, from `before_s` before the strike on,
+/// `count` samples and twice `before_s` more.
 pub fn struck(modes: &[Mode], burst: Option<&[f32]>, rate_hz: f64, count: usize, before_s: f64) -> Vec<f64> {
     let before = (before_s * rate_hz).round() as usize;
     let mut out = vec![0.0; count + 2 * before];

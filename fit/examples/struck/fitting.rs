@@ -76,6 +76,7 @@ fn children_s() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
     let ticks = |field: usize| after_name.split_whitespace().nth(field).and_then(|t| t.parse::<f64>().ok());
-    // cutime and cstime are the 16th and 17th fields, the 14th and 15th after the name and the state.
+    // cutime and cstime are the 16th and 17th fields, the 14th and 15th after the name and the
+    // state.
     0.01 * (ticks(13).unwrap_or(0.0) + ticks(14).unwrap_or(0.0))
 }

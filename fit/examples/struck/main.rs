@@ -1,10 +1,12 @@
-//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] [--out DIR] [--late] FILE…`
+//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY]
+//! [--out DIR] [--late] FILE…`
 //!
-//! Every file is fitted, the modes are struck once in the engine by an impulse of the model's own size, and what the
-//! renderer gives is held against the recording from the onset on (time zero within ±1 ms). With `--program` the fit is
-//! that of another build of `asperity` (its `--json` and modes file are read), so that two builds can be compared. With
-//! `--out` recording, struck body and modes of every file are written there, to be heard and looked at; with
-//! `--late` every late partial is told, what is missing of it, and the modes near it.
+//! Every file is fitted, the modes are struck once in the engine by an impulse of the model's own
+//! size, and what the renderer gives is held against the recording from the onset on (time zero
+//! within ±1 ms). With `--program` the fit is that of another build of `asperity` (its `--json` and
+//! modes file are read), so that two builds can be compared. With `--out` recording, struck body
+//! and modes of every file are written there, to be heard and looked at; with `--late` every late
+//! partial is told, what is missing of it, and the modes near it.
 //!
 //! | column | what |
 //! |---|---|
@@ -224,7 +226,8 @@ fn peak(samples: &[f64]) -> f64 {
     samples.iter().fold(0.0, |peak, x| peak.max(x.abs()))
 }
 
-/// `struck`, which begins `SHIFT_S` before its strike, moved to where the first `ALIGNED_S` agree best.
+/// `struck`, which begins `SHIFT_S` before its strike, moved to where the first `ALIGNED_S` agree
+/// best.
 fn aligned(sound: &[f64], struck: &[f64], rate: f64) -> Vec<f64> {
     let shift = (SHIFT_S * rate).round() as usize;
     let count = ((ALIGNED_S * rate) as usize).min(sound.len());

@@ -8,13 +8,15 @@ use std::f64::consts::PI;
 const NEAR_HZ: f64 = 8.0;
 /// The late part, s after the onset.
 const LATE_S: (f64, f64) = (0.3, 0.6);
-/// What is looked for: within this of the loudest, this far over the surroundings; absent from this on, dB.
+/// What is looked for: within this of the loudest, this far over the surroundings; absent from this
+/// on, dB.
 const WITHIN_DB: f64 = 25.0;
 const OVER_DB: f64 = 15.0;
 const ABSENT_DB: f64 = 20.0;
 /// Half width of the surroundings, Hz.
 const AROUND_HZ: f64 = 150.0;
-/// Where partials whose decay is compared are found, s after the onset; frames of the level, and their step, s.
+/// Where partials whose decay is compared are found, s after the onset; frames of the level, and
+/// their step, s.
 const DECAYING_S: (f64, f64) = (0.01, 0.16);
 const FRAME_S: f64 = 0.046;
 const STEP_S: f64 = 0.01;
@@ -72,7 +74,8 @@ pub struct DecayError {
     pub level: f64,
     /// Of the slope of the energy still to come, which beats sway less (Schroeder 1965).
     pub energy: f64,
-    /// Of both, their signs kept: the two know of each other no more than that they look at the same partial.
+    /// Of both, their signs kept: the two know of each other no more than that they look at the
+    /// same partial.
     pub both: f64,
 }
 
@@ -110,7 +113,8 @@ pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<DecayError>
         .collect()
 }
 
-/// The energy still to come, dB, of the first seven tenths (after that it falls for want of what follows).
+/// The energy still to come, dB, of the first seven tenths (after that it falls for want of what
+/// follows).
 fn to_come(levels: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut backwards: Vec<f64> = levels

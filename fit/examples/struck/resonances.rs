@@ -1,15 +1,17 @@
 //! Resonances that came out as more than one mode.
 //!
-//! The strongest mode takes the modes within three half widths of the narrower of the two and within 20 dB of it; the
-//! strongest of those left takes its own, and so on. A resonance of several modes is *split* where fewer would do: where
-//! for some two of them one damped sinusoid, fitted to what the recording has beside all other modes, leaves less than
-//! 18 dB under the resonance's energy more than the two. Otherwise it beats, and its modes are real.
+//! The strongest mode takes the modes within three half widths of the narrower of the two and
+//! within 20 dB of it; the strongest of those left takes its own, and so on. A resonance of several
+//! modes is *split* where fewer would do: where for some two of them one damped sinusoid, fitted to
+//! what the recording has beside all other modes, leaves less than 18 dB under the resonance's
+//! energy more than the two. Otherwise it beats, and its modes are real.
 
 use asperity_dsp::mode::Mode;
 use asperity_fft::num_complex::Complex;
 use std::f64::consts::PI;
 
-/// Strong modes lie within this of the strongest; what splits one lies within so many half widths, at most so far below.
+/// Strong modes lie within this of the strongest; what splits one lies within so many half widths,
+/// at most so far below.
 const STRONG_DB: f64 = 25.0;
 const HALF_WIDTHS: f64 = 3.0;
 const SPLIT_DB: f64 = 20.0;

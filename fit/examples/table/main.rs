@@ -1,7 +1,8 @@
-//! Made impacts through the whole fit: `table [SEEDS [FIRST [MODES,…]]] [-v]`, `table pushes [SEEDS [FIRST]]`
+//! Made impacts through the whole fit: `table [SEEDS [FIRST [MODES,…]]] [-v]`, `table pushes [SEEDS
+//! [FIRST]]`
 //!
-//! Each is 0.2 s of noise and then 2 s of modes struck at once ([`impact`]) or pushed ([`pushes`]), and is fitted as a
-//! user's file is: told nothing.
+//! Each is 0.2 s of noise and then 2 s of modes struck at once ([`impact`]) or pushed ([`pushes`]),
+//! and is fitted as a user's file is: told nothing.
 //!
 //! | column | what |
 //! |---|---|

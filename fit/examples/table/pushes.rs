@@ -1,4 +1,5 @@
-//! Bodies that are pushed for a while, not struck at once: is the end of the push found, and are the modes right after it?
+//! Bodies that are pushed for a while, not struck at once: is the end of the push found, and are
+//! the modes right after it?
 
 use super::{BEFORE_S, RATE_HZ, fitted};
 use asperity_dsp::mode::Mode;

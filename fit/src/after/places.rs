@@ -1,4 +1,5 @@
-//! Places of strikes: which points of a body with known shapes several recorded strikes of it were made at, and how well that explains them.
+//! Places of strikes: which points of a body with known shapes several recorded strikes of it were
+//! made at, and how well that explains them.
 //!
 //! ```text
 //! x[s][k] ≈ c_s g_k φ_k(p_s)        c_0 = 1        minimise Σ_k w_k Σ_s (x[s][k] − c_s g_k φ_k(p_s))²,   w_k = 1 / Σ_s x[s][k]²
@@ -12,15 +13,17 @@
 //! | g_k | how loud a mode is in the recordings: one gain a mode |
 //! | c_s | how hard strike s was, against the first |
 //!
-//! Measured modes are those shapes whose frequencies they lie nearest to, after one common factor (a body's Young's modulus and density are
-//! never known as well as its shape). From some hundred points as the first strike's place gains follow, from gains the other places, and so on in turns;
-//! the best beginning counts. Every mode weighs the same, however loud. R² is against what a body would do that sounds alike everywhere; a
-//! mirrored place of a symmetric body explains the same, and the first of them is told. It is a check of the shapes against the recordings
-//! and changes nothing in either.
+//! Measured modes are those shapes whose frequencies they lie nearest to, after one common factor
+//! (a body's Young's modulus and density are never known as well as its shape). From some hundred
+//! points as the first strike's place gains follow, from gains the other places, and so on in
+//! turns; the best beginning counts. Every mode weighs the same, however loud. R² is against what a
+//! body would do that sounds alike everywhere; a mirrored place of a symmetric body explains the
+//! same, and the first of them is told. It is a check of the shapes against the recordings and
+//! changes nothing in either.
 
 use super::strikes::Merged;
 
-/// How far from a shape's frequency a measured one may lie after the common factor.
+/// Largest distance of a measured frequency from a shape's after the common factor.
 const NEAR: f64 = 0.02;
 /// The common factor of frequencies lies within so much either way.
 const FACTOR: f64 = 1.3;
@@ -40,23 +43,25 @@ pub struct Shape<'a> {
     pub across: &'a [f64],
 }
 
-/// Where strikes were made.
+/// Places of strikes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
     /// The point of each strike.
     pub points: Vec<usize>,
-    /// How hard each was, against the first; below 0 where the recording is turned round.
+    /// Strength of each, against the first; below 0 where the recording is turned round.
     pub levels: Vec<f64>,
-    /// For each mode that was found among the shapes: which measured one, which shape, and its gain.
+    /// For each mode that was found among the shapes: which measured one, which shape, and its
+    /// gain.
     pub modes: Vec<(usize, usize, f64)>,
     /// Measured over computed frequencies.
     pub frequency_factor: f64,
-    /// How much of the difference between the strikes their places explain; 1 = all, 0 or less = nothing.
+    /// Share of the difference between the strikes that their places explain; 1 = all, 0 or less =
+    /// nothing.
     pub r_squared: f64,
 }
 
-/// Finds the places of merged strikes on a body with these shapes. None where fewer than [`LEAST_MODES`] modes are found among the shapes, or there
-/// are fewer than two strikes.
+/// Finds the places of merged strikes on a body with these shapes. None where fewer than
+/// [`LEAST_MODES`] modes are found among the shapes, or there are fewer than two strikes.
 #[must_use]
 pub fn places(merged: &Merged, shapes: &[Shape<'_>]) -> Option<Places> {
     let first = merged.strikes.first().filter(|_| merged.strikes.len() > 1)?;
@@ -81,7 +86,8 @@ pub fn places(merged: &Merged, shapes: &[Shape<'_>]) -> Option<Places> {
     })
 }
 
-/// The common factor under which most measured frequencies lie next to a shape's, nearest of all, and the pairs.
+/// The common factor under which most measured frequencies lie next to a shape's, nearest of all,
+/// and the pairs.
 fn matched(measured_hz: &[f64], shapes: &[Shape<'_>]) -> (f64, Vec<(usize, usize)>) {
     let steps = 400;
     let factor = |step: i32| FACTOR.powf(f64::from(step) / f64::from(steps));
@@ -96,7 +102,8 @@ fn matched(measured_hz: &[f64], shapes: &[Shape<'_>]) -> (f64, Vec<(usize, usize
     })
 }
 
-/// Measured modes with the shape that is nearest to each, where each is the other's nearest, and how far they are apart.
+/// Measured modes with the shape that is nearest to each, where each is the other's nearest, and
+/// how far they are apart.
 fn pairs(measured_hz: &[f64], shapes: &[Shape<'_>], factor: f64) -> Vec<(usize, usize, f64)> {
     let off = |measured: usize, shape: usize| {
         (measured_hz[measured] / (factor * shapes[shape].frequency_hz) - 1.0).abs()
@@ -117,7 +124,7 @@ fn pairs(measured_hz: &[f64], shapes: &[Shape<'_>], factor: f64) -> Vec<(usize, 
 struct Problem<'a> {
     told: Vec<Vec<f64>>,
     across: Vec<&'a [f64]>,
-    /// What no place explains.
+    /// Part that no place explains.
     total: f64,
 }
 
@@ -139,7 +146,8 @@ impl<'a> Problem<'a> {
         Self { across: pairs.iter().map(|(_, shape)| shapes[*shape].across).collect(), told, total }
     }
 
-    /// Turns of places and gains, from a first strike at `point`. None where some mode does not move there.
+    /// Turns of places and gains, from a first strike at `point`. None where some mode does not
+    /// move there.
     fn solve(&self, point: usize) -> Option<Solved> {
         let largest = |k: usize| self.across[k].iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let mut gains = Vec::new();

@@ -1,12 +1,12 @@
-//! The same body larger, smaller, or of another material.
+//! Scaling: a body larger, smaller, or of another material.
 //!
 //! ```text
 //! frequency ∝ 1/size          d(ω) = α + β ω²          d′ = d · law′(ω′) / law(ω)
 //! ```
 //! The damping law (Rayleigh: mass and stiffness proportional) is fitted to the modes by iterated
-//! re-weighting on log-ratios, so that a few odd modes do not bend it (Ren, Yeh & Lin 2013 fit the same
-//! two parameters as a material's signature). A mode keeps its own ratio to the law, so that bodies
-//! keep their character when their material is exchanged.
+//! re-weighting on log-ratios, so that a few odd modes do not bend it (Ren, Yeh & Lin 2013 fit the
+//! same two parameters as a material's signature). A mode keeps its own ratio to the law, so that
+//! bodies keep their character when their material is exchanged.
 
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
@@ -43,7 +43,8 @@ impl DampingLaw {
         Some(law)
     }
 
-    /// Weighted least squares of relative deviations, weights falling with the last law's deviations.
+    /// Weighted least squares of relative deviations, weights falling with the last law's
+    /// deviations.
     fn reweighted(self, points: &[(f64, f64)]) -> Self {
         let (mut s11, mut s12, mut s22, mut b1, mut b2) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for &(w, d) in points {
@@ -78,7 +79,8 @@ impl DampingLaw {
     }
 }
 
-/// The modes of the same body `size` times as large: lower by `size`, damped as the law has it there.
+/// The modes of the same body `size` times as large: lower by `size`, damped as the law has it
+/// there.
 #[must_use]
 pub fn scale_size(modes: &[Mode], size: f64) -> Vec<Mode> {
     let law = DampingLaw::of(modes);

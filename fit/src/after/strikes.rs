@@ -1,9 +1,9 @@
 //! Several strikes of one object: one set of frequencies and decays, amplitudes for every strike.
 //!
-//! A body has its poles; where it is struck only weights them. Modes of different strikes are one mode
-//! when their frequencies agree within four standard deviations or a part in a thousand; frequency and
-//! decay are averaged with the inverse variances as weights, and every strike's amplitudes are fitted
-//! again with the common poles.
+//! A body has its poles; where it is struck only weights them. Modes of different strikes are one
+//! mode when their frequencies agree within four standard deviations or a part in a thousand;
+//! frequency and decay are averaged with the inverse variances as weights, and every strike's
+//! amplitudes are fitted again with the common poles.
 
 use crate::body::fitted::{Fit, FittedMode, partial_of};
 use crate::recording::Recording;
@@ -27,10 +27,10 @@ pub struct Merged {
 }
 
 impl Merged {
-    /// Amplitudes of every strike but the first, signed: a mode that a strike drives the other way round has
-    /// a negative one. With the first strike's phases they are a body's further strike positions. Onsets are
-    /// known to a fraction of a millisecond only, so the delay that makes the phases agree best (or oppose)
-    /// is taken out first.
+    /// Amplitudes of every strike but the first, signed: a mode that a strike drives the other way
+    /// round has a negative one. With the first strike's phases they are a body's further strike
+    /// positions. Onsets are known to a fraction of a millisecond only, so the delay that makes the
+    /// phases agree best (or oppose) is taken out first.
     #[must_use]
     pub fn positions(&self) -> Vec<Vec<f64>> {
         let Some((first, others)) = self.strikes.split_first() else { return Vec::new() };

@@ -9,8 +9,8 @@
 //! | amplitude | `amplitude`, `gain`; or `level_db`, `op` (decibels) |
 //! | phase, rad | `phase_rad` (missing: 0) |
 //!
-//! Number lists under the same names (as sound-synthesis toolkits store modal data in JSON) are the same
-//! table ([`from_columns`]).
+//! Number lists under the same names (as sound-synthesis toolkits store modal data in JSON) are the
+//! same table ([`from_columns`]).
 
 use crate::body::fitted::FittedMode;
 use asperity_dsp::mode::Mode;
@@ -35,7 +35,7 @@ pub enum TableError {
         row: usize,
         /// The cell.
         what: String,
-        /// What would be right.
+        /// Remedy.
         right: &'static str,
     },
     /// Not one mode.
@@ -89,7 +89,8 @@ pub fn modes_to_csv(modes: &[Mode]) -> String {
 /// Modes of a CSV table.
 ///
 /// # Errors
-/// A missing column, a cell that is no number, a frequency not above 0, a negative decay, or no rows.
+/// A missing column, a cell that is no number, a frequency not above 0, a negative decay, or no
+/// rows.
 pub fn from_csv(text: &str) -> Result<Vec<Mode>, TableError> {
     let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty() && !l.starts_with('#'));
     let names: Vec<String> =

@@ -1,7 +1,8 @@
 //! The result of a fit: modes with their standard deviations, and figures of the rest.
 //!
-//! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
-//! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
+//! Everything that is said of the modes is said of the *struck body*: of what the engine plays when
+//! the modes file is struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t +
+//! φ) from the onset on and nothing else.
 
 use crate::body::residual::{Burst, Residual, ratio_db};
 use crate::body::solved::{Solved, Solving};
@@ -87,11 +88,11 @@ fn wrapped(angle: f64) -> f64 {
 pub struct Fit {
     /// The modes, most energy first.
     pub modes: Vec<FittedMode>,
-    /// What the recording is called.
+    /// Name of the recording.
     pub source: String,
     /// Sample rate, Hz.
     pub sample_rate_hz: f64,
-    /// Where the strike begins, s of the file.
+    /// Beginning of the strike, s of the file.
     pub onset_s: f64,
     /// First sample of the strike in the recording.
     pub onset_sample: usize,
@@ -103,16 +104,16 @@ pub struct Fit {
     pub noise_floor_db: f64,
     /// Recording over residual from `onset_s` + `start_offset_s` to `end_s`, dB.
     pub resynthesis_snr_db: f64,
-    /// The same from the onset on, the contact included: all that the engine plays.
+    /// SNR from the onset on, the contact included: all that the engine plays.
     pub snr_from_onset_db: f64,
-    /// The same within the band of the modes, half an octave around: without a rumble or a hiss that is no business
-    /// of the modes.
+    /// SNR within the band of the modes, half an octave around: without a rumble or a hiss that is
+    /// no business of the modes.
     pub snr_in_band_db: f64,
     /// Peak of the struck body over the recording's, dB.
     pub struck_peak_db: f64,
-    /// What the modes leave.
+    /// Residual of the modes.
     pub residual: Residual,
-    /// What the user should know.
+    /// Warnings.
     pub warnings: Vec<Warning>,
 }
 
@@ -124,8 +125,8 @@ const POOR_DB: f64 = 6.0;
 const HALF_OCTAVE: f64 = std::f64::consts::SQRT_2;
 
 impl Fit {
-    /// What `analysis`, whose partials stand `offset` samples after the onset, comes to. `samples`: the recording
-    /// without its mean.
+    /// Result of `analysis`, whose partials stand `offset` samples after the onset. `samples`: the
+    /// recording without its mean.
     pub(crate) fn assemble(
         recording: &Recording,
         samples: &[f64],
@@ -214,7 +215,8 @@ impl Fit {
         struck(&partials, count)
     }
 
-    /// The first `length_s` of the residual after the onset, faded out: what a body plays at an impact.
+    /// The first `length_s` of the residual after the onset, faded out: what a body plays at an
+    /// impact.
     #[must_use]
     pub fn burst(&self, length_s: f64) -> Burst {
         Burst::new(&self.residual.samples[self.onset_sample..], length_s, self.sample_rate_hz)

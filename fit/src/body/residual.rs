@@ -1,7 +1,7 @@
 //! Residual of a fit, the part that no mode explains: the attack's click, the room, the noise.
 //!
-//! Summarised so that a body can carry a short residual excitation: the level of the attack in octave
-//! bands, one value every 5 ms over the first tenth of a second.
+//! Summarised so that a body can carry a short residual excitation: the level of the attack in
+//! octave bands, one value every 5 ms over the first tenth of a second.
 
 use asperity_fft::FftPlanner;
 use nalgebra::Complex;
@@ -54,7 +54,8 @@ pub struct Residual {
     pub samples: Vec<f64>,
     /// Its rms over the analysed part relative to the recording's, dB.
     pub level_db: f64,
-    /// Rms of the first 5 ms relative to the recording's own there, dB: how much of the attack is no mode.
+    /// Rms of the first 5 ms relative to the recording's own there, dB: how much of the attack is
+    /// no mode.
     pub attack_db: f64,
     /// Octave-band envelopes of the attack.
     pub bands: Vec<BandEnvelope>,

@@ -135,7 +135,7 @@ mod tests {
         Partial { omega, delta, c: Complex::new(0.0, -c) }
     }
 
-    /// What `partials` become beside a recording of the `truth` in noise, and the part of it that
+    /// Result for `partials` beside a recording of the `truth` in noise, and the part of it that
     /// they leave.
     fn solved(truth: &[Partial], partials: Vec<Partial>, as_is: bool) -> (Vec<Partial>, f64) {
         let mut rng = Rng::new(5);

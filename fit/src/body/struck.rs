@@ -5,13 +5,15 @@
 //! ```text
 //! s[0] = 0          s[n] = Re Σ c zⁿ,  n ≥ 1
 //! ```
-//! The sample of the strike itself is silent: the force has not acted yet. A sound that begins at once is therefore met
-//! by a strike one sample before it ([`lead`]). (A striker that is not infinitely hard rounds the first samples off.)
+//! The sample of the strike itself is silent: the force has not acted yet. A sound that begins at
+//! once is therefore met by a strike one sample before it ([`lead`]). (A striker that is not
+//! infinitely hard rounds the first samples off.)
 
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::projection::synthesise;
 
-/// `count` samples of the struck body from the strike on; amplitudes of `partials` stand at the strike.
+/// `count` samples of the struck body from the strike on; amplitudes of `partials` stand at the
+/// strike.
 #[must_use]
 pub fn struck(partials: &[Partial], count: usize) -> Vec<f64> {
     let mut samples = synthesise(partials, count);
@@ -21,8 +23,9 @@ pub fn struck(partials: &[Partial], count: usize) -> Vec<f64> {
     samples
 }
 
-/// How many samples before `samples[onset]` the engine should strike `partials`, whose amplitudes stand at the onset:
-/// one, where the sound begins with more than half of what the modes do.
+/// Number of samples before `samples[onset]` at which the engine should strike `partials`, whose
+/// amplitudes stand at the onset: one, where the sound begins with more than half of what the modes
+/// do.
 #[must_use]
 pub fn lead(partials: &[Partial], samples: &[f64], onset: usize) -> usize {
     let begins: f64 = partials.iter().map(|p| p.c.re).sum();

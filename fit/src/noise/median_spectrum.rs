@@ -1,5 +1,6 @@
-//! The spectrum of what is steady in a signal: in every bin the median over time, which a click or a mode that dies away
-//! touches little, and what a percentile of such medians is of the noise they come from.
+//! The spectrum of what is steady in a signal: in every bin the median over time, which a click or
+//! a mode that dies away touches little, and what a percentile of such medians is of the noise they
+//! come from.
 
 use asperity_fft::FftPlanner;
 use nalgebra::Complex;
@@ -47,8 +48,8 @@ fn median_rank(count: usize) -> usize {
     count.div_ceil(2)
 }
 
-/// The 30th percentile of the median of `count` unit exponentials: the median is below x when at least its
-/// rank of them are, each with probability p = 1 − e^(−x).
+/// The 30th percentile of the median of `count` unit exponentials: the median is below x when at
+/// least its rank of them are, each with probability p = 1 − e^(−x).
 pub(crate) fn percentile_of_median(count: usize) -> f64 {
     let least = median_rank(count);
     let below = |p: f64| {

@@ -2,8 +2,9 @@
 //!
 //! Blackman–Harris frames over the quieter half of the recording; median over time in every bin (a
 //! click or a decaying mode touches few frames), then the 30th percentile over 1.5 kHz (modes touch
-//! few bins). Both order statistics of exponentially distributed powers are calibrated together, exactly.
-//! Edges of the spectrum are mirrored; the bins beside 0 Hz carry the removed mean and are replaced.
+//! few bins). Both order statistics of exponentially distributed powers are calibrated together,
+//! exactly. Edges of the spectrum are mirrored; the bins beside 0 Hz carry the removed mean and are
+//! replaced.
 
 use crate::noise::median_spectrum::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
 use crate::noise::tilt::Tilt;
@@ -12,12 +13,13 @@ use std::f64::consts::PI;
 
 /// Width over which the percentile is taken, Hz.
 const SMOOTHING_HZ: f64 = 1500.0;
-/// The first half counts when it is this much louder than its share: the larger of two estimates of the
-/// same noise would be biased.
+/// The first half counts when it is this much louder than its share: the larger of two estimates of
+/// the same noise would be biased.
 const LOUDER: f64 = 0.8;
 /// Length of the first epoch of noise by time, s.
 const FIRST_EPOCH_S: f64 = 0.02;
-/// The local noise over the smoothed one that makes noise steep: no scatter of the local one reaches that.
+/// The local noise over the smoothed one that makes noise steep: no scatter of the local one
+/// reaches that.
 const STEEP: f64 = 4.0;
 /// Noise variance per frequency, as if the noise at that frequency were white.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +27,7 @@ pub struct NoiseFloor {
     variance: Vec<f64>,
     /// For what is no steady noise: its first sample and the floor from there to the next.
     epochs: Vec<(f64, Self)>,
-    /// Where noise is steeper over frequency than the variances can follow.
+    /// Frequencies at which noise is steeper than the variances can follow.
     tilt: Option<Tilt>,
 }
 
@@ -38,7 +40,8 @@ impl NoiseFloor {
         if part.len() < length {
             return Self::steady(vec![least.max(mean_square(part)); 2]);
         }
-        // Blackman–Harris frames are nearly independent at half, and still add something at a third.
+        // Blackman–Harris frames are nearly independent at half, and still add something at a
+        // third.
         let hop = length / 3;
         let frames = 1 + (part.len() - length) / hop;
         // At most a few hundred frames, spread evenly: enough for a steady median.
@@ -55,9 +58,9 @@ impl NoiseFloor {
         Self { variance, epochs: Vec::new(), tilt: None }
     }
 
-    /// [`of_residual`](Self::of_residual), and by time as well: in epochs that double in length from
-    /// 20 ms on. What a real body leaves beside its modes dies away with them; a mode of 30 ms has
-    /// to stand above what is left in those 30 ms, not above the silence after it.
+    /// [`of_residual`](Self::of_residual), and by time as well: in epochs that double in length
+    /// from 20 ms on. What a real body leaves beside its modes dies away with them; a mode of 30 ms
+    /// has to stand above what is left in those 30 ms, not above the silence after it.
     #[must_use]
     pub fn by_time(samples: &[f64], rate_hz: f64, least: f64) -> Self {
         let mut floor = Self::of_residual(samples, rate_hz, least);
@@ -74,14 +77,15 @@ impl NoiseFloor {
         floor
     }
 
-    /// The noise that a partial stands in: what least squares with the epochs' own weights would know of it. In an
-    /// epoch that holds the part w of its energy over a variance v it learns w / v of it,
+    /// The noise that a partial stands in: what least squares with the epochs' own weights would
+    /// know of it. In an epoch that holds the part w of its energy over a variance v it learns w /
+    /// v of it,
     ///
     /// ```text
     /// variance = Σ w / Σ (w / v)
     /// ```
-    /// so that a loud attack takes little from a mode that is heard long after it (the arithmetic mean makes the
-    /// attack the noise of every mode).
+    /// so that a loud attack takes little from a mode that is heard long after it (the arithmetic
+    /// mean makes the attack the noise of every mode).
     #[must_use]
     pub fn variance_of(&self, partial: &Partial) -> f64 {
         let ends = self.epochs.iter().skip(1).map(|(from, _)| *from).chain([f64::INFINITY]);
@@ -96,14 +100,15 @@ impl NoiseFloor {
         if sum > 0.0 { self.tilted(total / sum, partial.omega) } else { steady }
     }
 
-    /// The same floor, and louder where `residual` is over a part of an octave.
+    /// Floor that is louder where `residual` is over a part of an octave.
     #[must_use]
     pub fn following(mut self, residual: &[f64]) -> Self {
         self.tilt = Tilt::of(residual);
         self
     }
 
-    /// Whether the noise [followed](Self::following) is anywhere far louder than smoothed over 1.5 kHz.
+    /// Tests whether the noise [followed](Self::following) is anywhere far louder than smoothed
+    /// over 1.5 kHz.
     #[must_use]
     pub fn is_steep(&self) -> bool {
         let smooth = Self { tilt: None, ..self.clone() };
@@ -115,8 +120,8 @@ impl NoiseFloor {
         self.tilt.as_ref().map_or(smooth, |tilt| tilt.above(smooth, omega))
     }
 
-    /// Estimates from what a fit left of a segment: the louder of its halves at every frequency, so that
-    /// a recording that is not quite a sum of modes is not judged by its silent end.
+    /// Estimates from what a fit left of a segment: the louder of its halves at every frequency, so
+    /// that a recording that is not quite a sum of modes is not judged by its silent end.
     #[must_use]
     pub fn of_residual(samples: &[f64], rate_hz: f64, least: f64) -> Self {
         let end = Self::estimate(samples, rate_hz, least);

@@ -1,22 +1,24 @@
 //! Noise that is steep over frequency: rumble, wind, 1/f.
 //!
-//! [`crate::noise::noise_floor`] smooths over 1.5 kHz, because modes ring in what it looks at; noise that falls by
-//! 6 dB an octave is ten times as loud at 100 Hz as the answer there, and its peaks pass for modes. In a *residual*
-//! little rings, so the spectrum can be followed over parts of an octave:
+//! [`crate::noise::noise_floor`] smooths over 1.5 kHz, because modes ring in what it looks at;
+//! noise that falls by 6 dB an octave is ten times as loud at 100 Hz as the answer there, and its
+//! peaks pass for modes. In a *residual* little rings, so the spectrum can be followed over parts
+//! of an octave:
 //!
 //! 1. medians over time of long frames (a quarter of the record: 1.5 Hz a bin at 2 s);
-//! 2. their 30th percentile over an octave at knots a quarter of an octave apart, joined by straight lines over
-//!    the logarithm of frequency;
-//! 3. the same again on the spectrum divided by that line, so that the slope within an octave does not bias
-//!    the percentile.
+//! 2. their 30th percentile over an octave at knots a quarter of an octave apart, joined by
+//!    straight lines over the logarithm of frequency;
+//! 3. the same again on the spectrum divided by that line, so that the slope within an octave does
+//!    not bias the percentile.
 //!
-//! Only where this exceeds the smooth floor by `TRUSTED` does it count: the percentile of few bins scatters, and
-//! what is white must stay so.
+//! Only where this exceeds the smooth floor by `TRUSTED` does it count: the percentile of few bins
+//! scatters, and what is white must stay so.
 
 use crate::noise::median_spectrum::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
 
-/// How much louder than the smooth floor the local one must be to count, as a part of it, when it is the
-/// percentile of one bin: some three standard deviations, which fall with the root of the number of bins.
+/// Excess of the local floor over the smooth one from which on it counts, as a part of it, when it
+/// is the percentile of one bin: some three standard deviations, which fall with the root of the
+/// number of bins.
 const TRUSTED: f64 = 3.4;
 /// Knots an octave.
 const KNOTS_PER_OCTAVE: f64 = 4.0;
@@ -35,7 +37,7 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// Of `residual`; `None` when it is too short to say.
+    /// Tilt of `residual`; `None` when it is too short to say.
     #[must_use]
     pub fn of(residual: &[f64]) -> Option<Self> {
         let length = previous_power_of_two(residual.len() / 2).min(1 << 17);

@@ -130,8 +130,9 @@ mod tests {
             let told = bounded(&partials, COUNT, RATE_HZ).is_some();
             (3.0 * LN_10 / (partials[0].delta * RATE_HZ), told)
         };
-        // Of δ N, with N samples of noise σ and a mode of amplitude A, the deviation is √(24 / N) σ / A or more: 0.1 for
-        // σ = 0.3, 0.5 for 1.5 and 1.3 for 4. At the bound δ N is 2.3; of 2 s it is 1.73, of 10 s 0.35.
+        // Of δ N, with N samples of noise σ and a mode of amplitude A, the deviation is √(24 / N) σ
+        // / A or more: 0.1 for σ = 0.3, 0.5 for 1.5 and 1.3 for 4. At the bound δ N is 2.3; of 2 s
+        // it is 1.73, of 10 s 0.35.
         for (noise, t60_s) in [(1.5, 2.0), (4.0, 10.0)] {
             let (unknown_s, told) = longest_s(noise, t60_s);
             assert!((unknown_s - 1.5).abs() < 1e-6 && told, "{noise} {t60_s}: {unknown_s}");

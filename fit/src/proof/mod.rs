@@ -1,4 +1,5 @@
-//! Proof: which partials the data need, which of them ring, and what a user should know of the others.
+//! Proof: which partials the data need, which of them ring, and what a user should know of the
+//! others.
 //!
 //! | file | from → to |
 //! |---|---|

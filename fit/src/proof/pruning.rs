@@ -1,12 +1,13 @@
-//! Pruning of modes that the data do not prove: a Wald test with the covariance of *all* parameters.
+//! Pruning of modes that the data do not prove: a Wald test with the covariance of *all*
+//! parameters.
 //!
 //! ```text
 //! W_k = c_kᵀ (σ_k² [ (JᵀJ)⁻¹ ]_cc,k )⁻¹ c_k        kept when  W_k ≥ 2 ln(5 N / P_fa)
 //! ```
 //! The inverse is that of the whole 4K × 4K matrix: two modes that split one resonance between them
-//! have enormous joint variances and fail, where a test of amplitudes alone would pass both (measured:
-//! 46 split modes in 100 against none). Only local minima are removed at a time, so that one of the
-//! two stays and is refitted.
+//! have enormous joint variances and fail, where a test of amplitudes alone would pass both
+//! (measured: 46 split modes in 100 against none). Only local minima are removed at a time, so that
+//! one of the two stays and is refitted.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::sinusoid::normal_equations::Scaled;
@@ -25,13 +26,13 @@ const SAME: f64 = 0.01;
 /// Standard deviations of one partial's parameters, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Uncertainty {
-    /// Of ω, radians a sample.
+    /// Deviation of ω, radians a sample.
     pub omega: f64,
-    /// Of δ, nepers a sample.
+    /// Deviation of δ, nepers a sample.
     pub delta: f64,
-    /// Of |c|.
+    /// Deviation of |c|.
     pub amplitude: f64,
-    /// Of arg c, radians.
+    /// Deviation of arg c, radians.
     pub phase: f64,
     /// Wald statistic: squared amplitude in standard deviations.
     pub wald: f64,
@@ -95,15 +96,16 @@ pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize, leas
 }
 
 /// Like [`prune`], but a partial goes only if the data do not miss it: when the others, refitted
-/// without it, leave nothing that its pole would explain. Two modes closer than their bandwidth each
-/// fail the Wald test, which is local, although one mode in their place leaves far more than noise
-/// behind (measured: 9 dB of resynthesis at 10 modes and 40 dB).
+/// without it, leave nothing that its pole would explain. Two modes closer than their bandwidth
+/// each fail the Wald test, which is local, although one mode in their place leaves far more than
+/// noise behind (measured: 9 dB of resynthesis at 10 modes and 40 dB).
 ///
-/// The statistic is Rao's: with r the residual of the refit, J the Jacobian of the others and A the two
-/// amplitude columns of the pole, h = Aᵀr − AᵀJ (JᵀJ)⁻¹ Jᵀr and S = AᵀA − AᵀJ (JᵀJ)⁻¹ JᵀA give
+/// The statistic is Rao's: with r the residual of the refit, J the Jacobian of the others and A the
+/// two amplitude columns of the pole, h = Aᵀr − AᵀJ (JᵀJ)⁻¹ Jᵀr and S = AᵀA − AᵀJ (JᵀJ)⁻¹ JᵀA give
 /// hᵀ S⁻¹ h / σ², what the squared residual would fall by.
 ///
-/// `kept` remembers the poles that were missed: while they stay where they are, they are not tried again.
+/// `kept` remembers the poles that were missed: while they stay where they are, they are not tried
+/// again.
 pub fn prune_missed_by_nobody(
     signal: &[f64],
     partials: &mut Vec<Partial>,
@@ -141,13 +143,13 @@ pub fn prune_missed_by_nobody(
     removed
 }
 
-/// Whether two states of a partial are one pole to a hundredth of its half-bandwidth.
+/// Tests whether two states of a partial are one pole to a hundredth of its half-bandwidth.
 fn same(a: &Partial, b: &Partial, count: usize) -> bool {
     let reach = SAME * b.delta.max(1.0 / count as f64);
     (a.omega - b.omega).abs() < reach && (a.delta - b.delta).abs() < reach
 }
 
-/// What adding each candidate pole to `others` would take off the squared residual.
+/// Reduction of the squared residual by adding each candidate pole to `others`.
 fn rao_gains(residual: &[f64], others: &[Partial], candidates: &[Partial]) -> Vec<f64> {
     let mut all = others.to_vec();
     all.extend_from_slice(candidates);

@@ -1,28 +1,32 @@
-//! Ringing against stationary noise: a decaying partial is told from noise that goes on as it began.
+//! Ringing against stationary noise: a decaying partial is told from noise that goes on as it
+//! began.
 //!
-//! Modes fitted to steep noise (rumble, wind, 1/f²) take the loudest part of it with them: the noise measured in
-//! what they leave is then too low, and they pass every test against it. So the recording itself is held against
-//! the noise it would be: stationary, with any spectrum that is smooth over some dozen bins. Nothing else has to be
-//! known of that spectrum, for a mode differs from it in two ways:
+//! Modes fitted to steep noise (rumble, wind, 1/f²) take the loudest part of it with them: the
+//! noise measured in what they leave is then too low, and they pass every test against it. So the
+//! recording itself is held against the noise it would be: stationary, with any spectrum that is
+//! smooth over some dozen bins. Nothing else has to be known of that spectrum, for a mode differs
+//! from it in two ways:
 //!
-//! * *it decays*: seen through a window of L samples at the segment's start, its bin is louder than the same bin
-//!   seen through the same window later on. L = 64, 128, … a quarter of the segment;
-//! * *it is a line*: its bin is louder than bins above and below it. L = the segment and half of it.
+//! * *it decays*: seen through a window of L samples at the segment's start, its bin is louder than
+//!   the same bin seen through the same window later on. L = 64, 128, … a quarter of the segment;
+//! * *it is a line*: its bin is louder than bins above and below it. L = the segment and half of
+//!   it.
 //!
-//! The windows are w(n) = (a n)³ e^(−a n), a = 20 / L, nearest to the exponential e^(−a n / 7): it keeps 63 % (−2 dB)
-//! of what the exponential itself would, but has no jump at its start, so that steep noise does not leak through
-//! (a⁸ / ω⁸). What they see are the differences of successive samples, in which a mode is the same mode and a slow
-//! wander is none.
+//! The windows are w(n) = (a n)³ e^(−a n), a = 20 / L, nearest to the exponential e^(−a n / 7): it
+//! keeps 63 % (−2 dB) of what the exponential itself would, but has no jump at its start, so that
+//! steep noise does not leak through (a⁸ / ω⁸). What they see are the differences of successive
+//! samples, in which a mode is the same mode and a slow wander is none.
 //!
-//! The power P of a bin of noise over the mean Q of n others, independent and alike, is an F(2, 2n) variable, which says
-//! how large the ratio r must be to count:
+//! The power P of a bin of noise over the mean Q of n others, independent and alike, is an F(2, 2n)
+//! variable, which says how large the ratio r must be to count:
 //!
 //! ```text
 //! p = (1 + r / n)^(−n)            r = n (p^(−1/n) − 1)            p = FALSE_ALARM / samples
 //! ```
-//! The mean of others is arithmetic and taken on both sides: where the noise is steep, it is too high rather than too low.
-//! A mode must have 2 to 4 dB more than [`crate::proof::pruning`] asks for: the price of not knowing the noise. It is paid
-//! only by a mode that is alone, or stands in noise that is steep.
+//! The mean of others is arithmetic and taken on both sides: where the noise is steep, it is too
+//! high rather than too low. A mode must have 2 to 4 dB more than [`crate::proof::pruning`] asks
+//! for: the price of not knowing the noise. It is paid only by a mode that is alone, or stands in
+//! noise that is steep.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::sinusoid::partial::Partial;
@@ -37,7 +41,8 @@ const FALSE_ALARM: f64 = 0.003;
 const SHORTEST: usize = 64;
 /// a · L: the window has fallen by 98 dB at its end.
 const WINDOW_NEPERS: f64 = 20.0;
-/// Windows overlap by three quarters: their bins are independent (the correlation of powers is 0.03).
+/// Windows overlap by three quarters: their bins are independent (the correlation of powers is
+/// 0.03).
 const HOPS: usize = 4;
 /// Lowest bin looked at: three a, what is slower is not seen as an oscillation.
 const LOWEST_BIN: usize = 10;
@@ -53,8 +58,8 @@ const STEADY: f64 = 4.0;
 /// Independent cells that are enough.
 const ENOUGH: f64 = 60.0;
 
-/// Whether `segment` is more than steady noise between two angular frequencies; `least_noise` is a variance
-/// that counts as noise in any case (rounding).
+/// Tests whether `segment` is more than steady noise between two angular frequencies; `least_noise`
+/// is a variance that counts as noise in any case (rounding).
 #[must_use]
 pub fn anything_rings(segment: &[f64], omega: (f64, f64), least_noise: f64) -> bool {
     let differences = differences(segment);
@@ -66,9 +71,9 @@ pub fn anything_rings(segment: &[f64], omega: (f64, f64), least_noise: f64) -> b
     })
 }
 
-/// Whether `residual`, what a fit left of a segment, is steady noise that is steep over frequency. What a real body
-/// leaves beside its modes dies away with them (ten times in power and more from one half to the other, on every
-/// recording of the corpus; noise stays within a tenth).
+/// Tests whether `residual`, what a fit left of a segment, is steady noise that is steep over
+/// frequency. What a real body leaves beside its modes dies away with them (ten times in power and
+/// more from one half to the other, on every recording of the corpus; noise stays within a tenth).
 #[must_use]
 pub fn is_steep_noise(residual: &[f64], rate_hz: f64, least_noise: f64) -> bool {
     let (start, end) = residual.split_at(residual.len() / 2);
@@ -77,8 +82,8 @@ pub fn is_steep_noise(residual: &[f64], rate_hz: f64, least_noise: f64) -> bool 
     power(start) < STEADY * power(end) && noise().is_steep()
 }
 
-/// Which of `partials`, fitted to a segment and leaving `residual` of it, stand out of steady noise. One that does is
-/// taken away before the others are looked at again.
+/// Which of `partials`, fitted to a segment and leaving `residual` of it, stand out of steady
+/// noise. One that does is taken away before the others are looked at again.
 #[must_use]
 pub fn standing_out(residual: &[f64], partials: &[Partial], least_noise: f64) -> Vec<bool> {
     let mut standing = vec![false; partials.len()];
@@ -111,9 +116,9 @@ fn differences(samples: &[f64]) -> Vec<f64> {
 /// One way of looking at a segment.
 #[derive(Debug, Clone, Copy)]
 struct View {
-    /// Of the window, samples.
+    /// Length of the window, samples.
     length: usize,
-    /// What the first frame's bins are compared with: later frames, or other bins.
+    /// Comparison of the first frame's bins: later frames, or other bins.
     with_later: bool,
 }
 
@@ -130,7 +135,7 @@ fn views(count: usize) -> Option<Vec<View>> {
 /// Powers per bin through windows of one length.
 struct Cells {
     view: View,
-    /// Of the first frame.
+    /// Power of the first frame.
     first: Vec<f64>,
     /// Running sums, over bins, of what these are compared with, and of how many frames that is.
     sums: Vec<f64>,
@@ -195,7 +200,8 @@ impl Cells {
         independent * ((-chance.ln() / independent).exp() - 1.0) * mean.max(rounding)
     }
 
-    /// Whether the first frame shows `partial`: both what it would have there alone and what is there count.
+    /// Tests whether the first frame shows `partial`: both what it would have there alone and what
+    /// is there count.
     fn show(&self, partial: &Partial, chance: f64) -> bool {
         let per_bin = 2.0 * PI / self.view.length as f64;
         let k = (partial.omega / per_bin).round() as usize;

@@ -1,10 +1,11 @@
 //! Rumble: faint modes below the lowest partial of the body.
 //!
-//! A room, a table or a breath fills the octaves below a struck body with slow noise, and a fit finds modes in it: 26 of 63
-//! in a vibraphone bar's recording, all below 1.25 kHz and together 34 dB down. The lowest *proven* partial is the lowest
-//! that rings (Q = ω / 2δ of at least 10) and is loud (30 dB under the loudest such). What lies below it and is fainter
-//! than that is left out, the faintest first, as long as this costs no more than 0.5 dB of signal to error. A thump that is
-//! loud stays: it is part of the sound, if not of the body.
+//! A room, a table or a breath fills the octaves below a struck body with slow noise, and a fit
+//! finds modes in it: 26 of 63 in a vibraphone bar's recording, all below 1.25 kHz and together 34
+//! dB down. The lowest *proven* partial is the lowest that rings (Q = ω / 2δ of at least 10) and is
+//! loud (30 dB under the loudest such). What lies below it and is fainter than that is left out,
+//! the faintest first, as long as this costs no more than 0.5 dB of signal to error. A thump that
+//! is loud stays: it is part of the sound, if not of the body.
 
 use crate::proof::warning::Warning;
 use crate::sinusoid::partial::Partial;
@@ -17,7 +18,8 @@ const LOUD: f64 = 1e-3;
 /// By how much, as a part, the squared residual may rise: 0.5 dB.
 const COST: f64 = 0.12;
 
-/// Takes the rumble out of `partials`, which leave a squared residual of `left` over `count` samples.
+/// Takes the rumble out of `partials`, which leave a squared residual of `left` over `count`
+/// samples.
 pub(crate) fn take_rumble(
     partials: &mut Vec<Partial>,
     count: usize,

@@ -8,25 +8,27 @@ use asperity_fft::FftPlanner;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
-/// Least nepers a mode must lose over the sound to count as decaying. A mode that loses just these has a T60 of
-/// 6.9 / 0.345 = 20 times the length of the sound: nothing is known to ring longer.
+/// Least nepers a mode must lose over the sound to count as decaying. A mode that loses just these
+/// has a T60 of 6.9 / 0.345 = 20 times the length of the sound: nothing is known to ring longer.
 const LEAST_FALL: f64 = 3.0 * std::f64::consts::LN_10 / 20.0;
 /// Highest hum frequency, and how near to a multiple of the mains it must be, Hz.
 const HIGHEST_HUM_HZ: f64 = 610.0;
 const HUM_WIDTH_HZ: f64 = 0.4;
-/// What a frequency is known to over the length of the sound, in periods: shorter sounds cannot tell hum from partials.
+/// Resolution of a frequency over the length of the sound, in periods: shorter sounds cannot tell
+/// hum from partials.
 const RESOLUTION: f64 = 0.5;
-/// A tone of the mains that does not decay is hum if it is fainter than this part of the loudest mode, in amplitude.
+/// A tone of the mains that does not decay is hum if it is fainter than this part of the loudest
+/// mode, in amplitude.
 const HUM_AMPLITUDE: f64 = 0.5;
 /// Any other that does not decay is no mode if it is this far below the strongest one, in energy.
 const FAINT: f64 = 0.03;
 /// Share of a mode's energy that may remain around its frequency.
 const EXPONENTIAL_SHARE: f64 = 0.01;
-/// How many of the strongest modes are checked.
+/// Number of the strongest modes that are checked.
 const CHECKED: usize = 8;
 
-/// Removes tones of the mains and other faint ones that do not decay within `count` samples, and lets the rest ring for
-/// at most twenty times these.
+/// Removes tones of the mains and other faint ones that do not decay within `count` samples, and
+/// lets the rest ring for at most twenty times these.
 pub fn take_what_does_not_ring(partials: &mut Vec<Partial>, count: usize, rate_hz: f64) -> Vec<Warning> {
     let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
     let loudest = partials.iter().map(|p| p.c.norm()).fold(0.0, f64::max);
@@ -64,7 +66,7 @@ pub fn take_what_does_not_ring(partials: &mut Vec<Partial>, count: usize, rate_h
     .collect()
 }
 
-/// How many of a kind, and the one that weighs most.
+/// Number of a kind, and the one that weighs most.
 #[derive(Default)]
 struct Group {
     count: usize,
@@ -125,7 +127,7 @@ pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_h
     cancelling.into_iter().chain(crooked).collect()
 }
 
-/// Whether two partials at nearly the same pole are far louder apart than together.
+/// Tests whether two partials at nearly the same pole are far louder apart than together.
 #[must_use]
 pub fn cancels(a: &Partial, b: &Partial) -> bool {
     let near = (a.omega - b.omega).abs() < 0.5 * (a.delta + b.delta);
@@ -148,7 +150,8 @@ mod tests {
 
     #[test]
     fn hum_that_outlasts_a_short_body_is_no_mode_of_it() {
-        // 26 dB under a body that is over in 60 ms it has half its energy in 2 s, and was once kept to ring for 40 s.
+        // 26 dB under a body that is over in 60 ms it has half its energy in 2 s, and was once kept
+        // to ring for 40 s.
         let partial = |hz: f64, decay_per_s: f64, c: f64| Partial {
             omega: 2.0 * PI * hz / 44_100.0,
             delta: decay_per_s / 44_100.0,

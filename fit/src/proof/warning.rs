@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Warning {
     /// Samples stuck at full scale.
     Clipped {
-        /// How many.
+        /// Number.
         samples: usize,
     },
     /// The file breaks off.
@@ -42,49 +42,51 @@ pub enum Warning {
     },
     /// Modes that do not decay within the sound; they ring twenty times as long as it.
     Undamped {
-        /// How many.
+        /// Number.
         count: usize,
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
-    /// Modes that ring so long that the sound does not tell their decay; they ring three times as long as it.
+    /// Modes that ring so long that the sound does not tell their decay; they ring three times as
+    /// long as it.
     UnknownDecay {
-        /// How many.
+        /// Number.
         count: usize,
         /// Frequency of the strongest, Hz.
         frequency_hz: f64,
     },
     /// Faint tones that do not decay, left out of the modes.
     Steady {
-        /// How many.
+        /// Number.
         count: usize,
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
     /// Mains hum, left out of the modes.
     Hum {
-        /// How many tones.
+        /// Number of tones.
         count: usize,
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
     /// Faint modes below the lowest partial of the body, left out.
     Rumble {
-        /// How many.
+        /// Number.
         count: usize,
         /// Frequency of the lowest partial.
         lowest_hz: f64,
     },
     /// Strong modes whose decay no exponential describes.
     NotExponential {
-        /// How many.
+        /// Number.
         count: usize,
         /// Frequency of the one of which most remains.
         frequency_hz: f64,
-        /// What is left of it, relative to it, dB.
+        /// Remainder of it, relative to it, dB.
         left_db: f64,
     },
-    /// Struck at once, the modes would be louder than the recording ever is; their amplitudes were fitted anew.
+    /// Struck at once, the modes would be louder than the recording ever is; their amplitudes were
+    /// fitted anew.
     LouderThanRecorded {
         /// By how much their peak was over the recording's, dB.
         over_db: f64,
@@ -101,7 +103,7 @@ pub enum Warning {
     },
     /// Pairs of modes that all but cancel each other.
     Cancelling {
-        /// How many pairs.
+        /// Number of pairs.
         count: usize,
         /// Frequency of the strongest.
         frequency_hz: f64,
@@ -133,7 +135,7 @@ impl Warning {
         }
     }
 
-    /// How many samples, strikes, modes or pairs it is about; 1 where it is about the recording.
+    /// Number of samples, strikes, modes or pairs it is about; 1 where it is about the recording.
     #[must_use]
     pub fn count(&self) -> usize {
         match self {

@@ -1,7 +1,7 @@
 //! One channel of a recording, in `f64`, with what its file says about its own faults.
 //!
-//! WAV, AIFF, FLAC, Ogg, MP3 or M4A (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files are read
-//! in two passes, so that only the minute around the first strike is ever in memory.
+//! WAV, AIFF, FLAC, Ogg, MP3 or M4A (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files
+//! are read in two passes, so that only the minute around the first strike is ever in memory.
 //!
 //! | file | from → to |
 //! |---|---|
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 /// Most seconds kept of a file.
 pub const LONGEST_KEPT_S: f64 = 60.0;
-/// What is kept before the first loud place of a longer file.
+/// Span that is kept before the first loud place of a longer file.
 const KEPT_BEFORE_S: f64 = 2.0;
 /// A place is loud from this part of the peak.
 const LOUD: f64 = 0.1;
@@ -55,7 +55,7 @@ pub enum RecordingError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         source: std::io::Error,
     },
     /// The bytes are no sound, or packed in a way that is not read.
@@ -63,7 +63,7 @@ pub enum RecordingError {
     NotSound {
         /// The file.
         path: PathBuf,
-        /// What it is, or what the reader stumbled over.
+        /// Kind of file, or what the reader stumbled over.
         what: String,
     },
     /// A channel that is not there.
@@ -105,7 +105,7 @@ pub enum RecordingError {
     TooShort {
         /// The file.
         name: String,
-        /// How many there are.
+        /// Number that there is.
         samples: usize,
     },
     /// Nothing but a constant.
@@ -117,7 +117,7 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    /// What a file was refused for.
+    /// Reason for refusing a file.
     fn of(refusal: Refusal, path: &Path) -> Self {
         let path = path.to_owned();
         match refusal {

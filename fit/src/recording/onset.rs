@@ -1,26 +1,29 @@
-//! Onset detection: the first samples of the strikes, and where the next strike or the noise ends each.
+//! Onset detection: the first samples of the strikes, and where the next strike or the noise ends
+//! each.
 //!
-//! The envelope is the rms over 1 ms. A *strike* is a place where it rises to twice what it reached in
-//! the 80 ms before, to 5 % of the recording's peak and well over the background; beats of close modes rise as far, but
-//! never above what they reached one beat ago, and noise at the very start of a file rises over nothing at all. A body
-//! that still rings is not twice as loud when it is struck again: there the sound must grow by a seventh only, if what its
-//! past does not predict (`whitened`) rises fourfold, to a quarter of its own peak. A strike's
-//! first sample follows by Maeda's (1985) picker: the split of a few milliseconds into two parts of constant variance
-//! that is the likeliest.
+//! The envelope is the rms over 1 ms. A *strike* is a place where it rises to twice what it reached
+//! in the 80 ms before, to 5 % of the recording's peak and well over the background; beats of close
+//! modes rise as far, but never above what they reached one beat ago, and noise at the very start
+//! of a file rises over nothing at all. A body that still rings is not twice as loud when it is
+//! struck again: there the sound must grow by a seventh only, if what its past does not predict
+//! (`whitened`) rises fourfold, to a quarter of its own peak. A strike's first sample follows by
+//! Maeda's (1985) picker: the split of a few milliseconds into two parts of constant variance that
+//! is the likeliest.
 //!
-//! *The best* strike is heard alone for longest and is strong: until the next strike, or until it reaches the background,
-//! t seconds are left to it (more than 2 count as 2), and
+//! *The best* strike is heard alone for longest and is strong: until the next strike, or until it
+//! reaches the background, t seconds are left to it (more than 2 count as 2), and
 //!
 //! ```text
 //! worth = t · √(level / strongest level)         of those with at least a quarter of the strongest one's level
 //! ```
-//! so that a strike of half the level must ring 1.4 times as long. Of two that are worth the same to a tenth, the first.
+//! so that a strike of half the level must ring 1.4 times as long. Of two that are worth the same
+//! to a tenth, the first.
 
 use crate::recording::whitened::whitened;
 
 /// Length of the envelope's window, s.
 const ENVELOPE_S: f64 = 0.001;
-/// How far back a strike must be louder than anything, s.
+/// Span over which a strike must be louder than anything, s.
 const LOOK_BACK_S: f64 = 0.08;
 /// Level of a strike over the background, which is what this part of the envelope stays below.
 const OVER_BACKGROUND: f64 = 4.0;
@@ -29,8 +32,8 @@ const BACKGROUND: f64 = 0.1;
 const RISE: f64 = 2.0;
 /// Least level of a strike, of the recording's peak envelope.
 const LEAST_LEVEL: f64 = 0.05;
-/// What is predicted by nothing must rise so far where a body still rings, to so much of its own peak; the sound itself at
-/// least so far over what it was just before.
+/// Rise, over its own peak, of what is predicted by nothing where a body still rings; the sound
+/// itself at least so far over what it was just before.
 const NEW_RISE: f64 = 4.0;
 const NEW_LEVEL: f64 = 0.25;
 const LOUDER: f64 = 1.15;
@@ -40,7 +43,7 @@ const RISING_S: f64 = 0.004;
 const SAME_STRIKE_S: f64 = 0.03;
 /// Least level of the best strike, of the strongest one's.
 const STRONG: f64 = 0.25;
-/// What of its time a strike is worth at most, s; how far over the background it is still heard.
+/// Largest worth of a strike's time, s; level over the background at which it is still heard.
 const LONG_ENOUGH_S: f64 = 2.0;
 const HEARD: f64 = 2.0;
 /// A later strike must be worth this much more.
@@ -69,7 +72,7 @@ pub struct Strikes {
     pub onsets: Vec<usize>,
     /// One past the last sample of each.
     ends: Vec<usize>,
-    /// What each is worth.
+    /// Worth of each.
     worth: Vec<f64>,
 }
 
@@ -137,14 +140,15 @@ fn envelope_of(samples: &[f64], hop: usize) -> Vec<f64> {
     samples.chunks(hop).map(|c| (c.iter().map(|x| x * x).sum::<f64>() / c.len() as f64).sqrt()).collect()
 }
 
-/// What the envelope is where nothing is struck.
+/// Envelope where nothing is struck.
 fn background(envelope: &[f64]) -> f64 {
     let mut sorted = envelope.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted[(BACKGROUND * (sorted.len() - 1) as f64) as usize]
 }
 
-/// Where the envelope, or that of what is `new`, rises as it does at a strike, and how high within the next 30 ms.
+/// Places where the envelope, or that of what is `new`, rises as it does at a strike, and how high
+/// within the next 30 ms.
 fn rises(envelope: &[f64], new: &[f64], background: f64, hops_per_s: f64) -> Vec<(usize, f64)> {
     let hops = |s: f64| (s * hops_per_s) as usize;
     let (back, same, rising) = (hops(LOOK_BACK_S), hops(SAME_STRIKE_S), hops(RISING_S));

@@ -1,8 +1,8 @@
-//! FLAC, Ogg (Vorbis or FLAC inside), AIFF, MP3, M4A and WAV of ADPCM frame by frame, decoded by `symphonia`; the only place that
-//! names it.
+//! FLAC, Ogg (Vorbis or FLAC inside), AIFF, MP3, M4A and WAV of ADPCM frame by frame, decoded by
+//! `symphonia`; the only place that names it.
 //!
-//! FLAC, AIFF and ALAC give the integers that were packed, exactly; the others what their decoders make of them. Of chained Ogg
-//! streams the first is read, as libsndfile reads them.
+//! FLAC, AIFF and ALAC give the integers that were packed, exactly; the others what their decoders
+//! make of them. Of chained Ogg streams the first is read, as libsndfile reads them.
 
 use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
@@ -91,7 +91,7 @@ pub(crate) struct PackedFile {
     frames_read: u64,
     truncated: bool,
     ended: bool,
-    /// What the file is, for errors.
+    /// Kind of the file, for errors.
     kind: &'static str,
 }
 

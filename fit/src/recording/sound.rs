@@ -1,6 +1,7 @@
 //! Sound: one channel of a file as it stands there, for whoever is not after a strike in it.
 //!
-//! WAV of any width, FLAC and Ogg Vorbis, as [`load`](super::load) reads them, but of any length, rate and content.
+//! WAV of any width, FLAC and Ogg Vorbis, as [`load`](super::load) reads them, but of any length,
+//! rate and content.
 
 use super::RecordingError;
 use super::sound_file::SoundFile;

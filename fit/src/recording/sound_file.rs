@@ -68,7 +68,7 @@ impl SoundFile {
         }
     }
 
-    /// Whether the file has broken off before its header says.
+    /// Tests whether the file has broken off before its header says.
     pub(crate) fn truncated(&self) -> bool {
         match self {
             Self::Wav(file) => file.truncated(),
@@ -77,7 +77,7 @@ impl SoundFile {
     }
 }
 
-/// Where the sound begins behind ID3v2 tags, and its first twelve bytes.
+/// Beginning of the sound behind ID3v2 tags, and its first twelve bytes.
 fn after_tags(file: &mut File) -> Result<(u64, [u8; 12]), Refusal> {
     let mut offset = 0;
     for _ in 0..MOST_TAGS {
@@ -95,7 +95,7 @@ fn after_tags(file: &mut File) -> Result<(u64, [u8; 12]), Refusal> {
     Err(Refusal::Not("tags without a sound behind them".into()))
 }
 
-/// What a file is that `packed_file` reads.
+/// Kind of a file that `packed_file` reads.
 fn packed_kind(begins: &[u8; 12]) -> Option<&'static str> {
     match begins {
         [b'f', b'L', b'a', b'C', ..] => Some("FLAC"),
@@ -107,7 +107,7 @@ fn packed_kind(begins: &[u8; 12]) -> Option<&'static str> {
     }
 }
 
-/// What a file is that cannot be read, by its first twelve bytes.
+/// Kind of a file that cannot be read, by its first twelve bytes.
 fn name_of(begins: &[u8]) -> &'static str {
     match begins {
         [b'c', b'a', b'f', b'f', ..] => "CAF",

@@ -3,7 +3,7 @@
 /// Most channels of a file.
 pub(crate) const MOST_CHANNELS: usize = 64;
 
-/// What a file says of its sound.
+/// Format of a file's sound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Format {
     pub(crate) channels: usize,
@@ -16,9 +16,9 @@ pub(crate) struct Format {
 
 /// Why bytes are no sound.
 pub(crate) enum Refusal {
-    /// What cannot be decoded, and what it is.
+    /// Codec that cannot be decoded.
     Not(String),
-    /// What the system said.
+    /// Message of the system.
     Io(std::io::Error),
 }
 

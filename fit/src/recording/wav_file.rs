@@ -3,20 +3,21 @@
 //! ```text
 //! RIFF size WAVE   { name size bytes [pad byte when size is odd] } …      of which `fmt ` comes before `data`
 //! ```
-//! Integers of 8 to 32 bits (8 without a sign; fewer valid bits than the container has are the upper ones), floats of 32
-//! and 64 bits, A-law and µ-law, also behind the extensible format's identifier; big-endian as `RIFX`; more than 4 GB as
-//! `RF64` or `BW64`, whose `ds64` chunk holds the sizes; the size of `data` may be missing (0 or all ones) as streaming
-//! recorders leave it. Other chunks (`bext`, `LIST`, `iXML`, `JUNK`, cues) are passed over. Whatever is said of sizes, no
-//! more is read than there is.
+//! Integers of 8 to 32 bits (8 without a sign; fewer valid bits than the container has are the
+//! upper ones), floats of 32 and 64 bits, A-law and µ-law, also behind the extensible format's
+//! identifier; big-endian as `RIFX`; more than 4 GB as `RF64` or `BW64`, whose `ds64` chunk holds
+//! the sizes; the size of `data` may be missing (0 or all ones) as streaming recorders leave it.
+//! Other chunks (`bext`, `LIST`, `iXML`, `JUNK`, cues) are passed over. Whatever is said of sizes,
+//! no more is read than there is.
 
 use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
-/// How one sample is written.
+/// Format of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sample {
-    /// Of so many bytes; one byte has no sign.
+    /// Integer of so many bytes; one byte has no sign.
     Integer(usize),
     Float32,
     Float64,
@@ -30,7 +31,8 @@ const FLOAT: u16 = 3;
 const A_LAW: u16 = 6;
 const MU_LAW: u16 = 7;
 const EXTENSIBLE: u16 = 0xfffe;
-/// The identifiers of the extensible format are a tag and one of these: the common one, and that of Ambisonics.
+/// The identifiers of the extensible format are a tag and one of these: the common one, and that of
+/// Ambisonics.
 const IDENTIFIERS: [[u8; 14]; 2] = [
     [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71],
     [0, 0, 0x21, 0x07, 0xd3, 0x11, 0x86, 0x44, 0xc8, 0xc1, 0xca, 0, 0, 0],
@@ -139,7 +141,7 @@ impl WavFile {
     }
 }
 
-/// What the format chunk says.
+/// Contents of the format chunk.
 struct Layout {
     sample: Sample,
     channels: usize,
@@ -194,7 +196,7 @@ impl Layout {
     }
 }
 
-/// What a format tag stands for.
+/// Meaning of a format tag.
 fn name_of(tag: u16) -> String {
     match tag {
         PCM => "integers".into(),

@@ -1,15 +1,18 @@
 //! Whitened sound: what the past of a recording does not predict, which is its strikes.
 //!
-//! A ringing body obeys a linear recurrence, a strike does not: in the error of a linear predictor of the whole recording
+//! A ringing body obeys a linear recurrence, a strike does not: in the error of a linear predictor
+//! of the whole recording
 //!
 //! ```text
 //! e[n] = x[n] − Σ_{k=1…P} a_k x[n − k]        Σ e² least  (autocorrelation method, Levinson 1947, Durbin 1960)
 //! ```
-//! the ringing is low, beats and hum are gone, and a second strike of a body that still rings stands out as the first does.
+//! the ringing is low, beats and hum are gone, and a second strike of a body that still rings
+//! stands out as the first does.
 
 /// Order of the predictor: sixteen resonances, more than are loud for long.
 const ORDER: usize = 32;
-/// White noise beside the sound, as a part of its power, so that silence is no reason for a perfect prediction.
+/// White noise beside the sound, as a part of its power, so that silence is no reason for a perfect
+/// prediction.
 const RIDGE: f64 = 1e-9;
 
 /// The prediction error of every sample, as many as there are.

@@ -12,14 +12,17 @@ use nalgebra::Complex;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Nepers by which a mode may have decayed within a level's span and still be that level's business.
+/// Nepers by which a mode may have decayed within a level's span and still be that level's
+/// business.
 pub(crate) const SPAN_NEPERS: f64 = 3.0;
-/// Singular values this far below a band's largest are no modes of their own where a recording is no sum of modes: a
-/// real decay is an exponential to some 40 dB, and what lies far below the band's strongest mends it.
+/// Singular values this far below a band's largest are no modes of their own where a recording is
+/// no sum of modes: a real decay is an exponential to some 40 dB, and what lies far below the
+/// band's strongest mends it.
 const MISMATCH: f64 = 3e-3;
 /// Most candidates of one round there: the cost of a joint fit grows with their cube.
 const MOST_AT_ONCE: usize = 100;
-/// Poles taken of a band there, the strongest: of long bands, and of those decimated by less than `SHORT`.
+/// Poles taken of a band there, the strongest: of long bands, and of those decimated by less than
+/// `SHORT`.
 const A_BAND: usize = 4;
 const A_SHORT_BAND: usize = 8;
 const SHORT: usize = 32;
@@ -27,7 +30,7 @@ const SHORT: usize = 32;
 /// A partial without amplitude, and its energy in its band.
 type Ranked = (Partial, f64);
 
-/// What a search looks with.
+/// Tools of a search.
 pub(crate) struct Search<'a> {
     limits: &'a Limits,
     noise: &'a NoiseFloor,
@@ -46,8 +49,8 @@ impl<'a> Search<'a> {
         Self { limits, noise, strongest_only: true }
     }
 
-    /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left out
-    /// because what they hold may have leaked from stronger ones.
+    /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left
+    /// out because what they hold may have leaked from stronger ones.
     pub(crate) fn candidates(&self, level: Level, residual: &[f64]) -> (Vec<Partial>, bool) {
         let bands = split(residual, level);
         let samples = bands.bands[0].len();
@@ -82,14 +85,16 @@ impl<'a> Search<'a> {
         let found =
             self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
         let mut found = without_doubles(found, level, samples);
-        // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
+        // Of more than may be kept, the strongest; the others get their turn when these are
+        // subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
         hidden |= found.len() > most;
         found.truncate(most);
         (found.into_iter().map(|(partial, _)| partial).collect(), hidden)
     }
 
-    /// Mean number of singular values over the noise's edge in the `count` strongest bands of a level.
+    /// Mean number of singular values over the noise's edge in the `count` strongest bands of a
+    /// level.
     pub(crate) fn mean_order(&self, level: Level, signal: &[f64], count: usize) -> f64 {
         let bands = split(signal, level);
         let energy = |k: &usize| bands.bands[*k].iter().map(Complex::norm_sqr).sum::<f64>();
@@ -189,8 +194,8 @@ fn strongest(peaks: &[[f64; 4]]) -> [f64; 4] {
     peaks.iter().fold([0.0; 4], |most, peaks| std::array::from_fn(|w| most[w].max(peaks[w])))
 }
 
-/// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band whose
-/// centre is nearer.
+/// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band
+/// whose centre is nearer.
 fn without_doubles(found: Vec<(usize, Vec<Ranked>)>, level: Level, samples: usize) -> Vec<Ranked> {
     let tolerance = 1.0 / (samples * level.decimation) as f64;
     let mut kept: Vec<(usize, Ranked)> = Vec::new();

@@ -4,8 +4,9 @@
 //! H[i, m] = y[i + m]   (L × M)         H Hᴴ = U S² Uᴴ         U↑ Φ = U↓         poles = eig Φ
 //! ```
 //! No singular value decomposition: H Hᴴ of a Hankel matrix costs O(L²) by its recurrence down the
-//! diagonals, and its eigenvectors are the left singular vectors (a dynamic range of 1e7 in amplitude
-//! remains, far beyond a band's). Φ in closed form, because U↑ᴴ U↑ = I − u uᴴ with u the last row of U.
+//! diagonals, and its eigenvectors are the left singular vectors (a dynamic range of 1e7 in
+//! amplitude remains, far beyond a band's). Φ in closed form, because U↑ᴴ U↑ = I − u uᴴ with u the
+//! last row of U.
 
 use crate::search::model_order::order;
 use crate::sinusoid::geometric_sum::geometric_sums;
@@ -13,8 +14,8 @@ use nalgebra::{Cholesky, Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 type C = Complex<f64>;
 
-/// Share of the window that is the height of the Hankel matrix, and its largest height: a higher one costs the cube of it
-/// and tells no more modes of one band apart that a joint fit would keep.
+/// Share of the window that is the height of the Hankel matrix, and its largest height: a higher
+/// one costs the cube of it and tells no more modes of one band apart that a joint fit would keep.
 const HEIGHT: f64 = 0.4;
 const HIGHEST: usize = 40;
 
@@ -46,14 +47,14 @@ impl Subspace {
     }
 }
 
-/// How many singular values of `band` stand above the noise's edge.
+/// Number of singular values of `band` above the noise's edge.
 #[must_use]
 pub fn band_order(band: &[C], noise_std: f64) -> usize {
     Subspace::of(band).map_or(0, |subspace| subspace.order(noise_std))
 }
 
-/// The poles of `band` per decimated sample, those within the noise or below `least_share` of the strongest
-/// left out.
+/// The poles of `band` per decimated sample, those within the noise or below `least_share` of the
+/// strongest left out.
 #[must_use]
 pub fn poles(band: &[C], noise_std: f64, least_share: f64) -> Vec<C> {
     let Some(subspace) = Subspace::of(band) else { return Vec::new() };
@@ -67,8 +68,8 @@ pub fn poles(band: &[C], noise_std: f64, least_share: f64) -> Vec<C> {
     shift_eigenvalues(&basis)
 }
 
-/// Energy of every pole in `band`: least-squares amplitudes of all of them, squared and summed over the
-/// window. Says which poles of many bands matter; infinite when the poles cannot be told apart.
+/// Energy of every pole in `band`: least-squares amplitudes of all of them, squared and summed over
+/// the window. Says which poles of many bands matter; infinite when the poles cannot be told apart.
 #[must_use]
 pub fn energies(band: &[C], poles: &[C]) -> Vec<f64> {
     let count = band.len();

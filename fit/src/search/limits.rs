@@ -9,16 +9,16 @@ use std::f64::consts::PI;
 pub(crate) const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Lowest frequency analysed unless a lower one is asked for, Hz.
 const LOWEST_HZ: f64 = 20.0;
-/// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
-/// the attack.
+/// A mode that falls by more nepers than this during the contact is not known at the onset: it is
+/// part of the attack.
 const BACK_NEPERS: f64 = 1.5;
 /// Nothing so far below the strongest mode's energy is looked for, dB.
 const FAINTEST_DB: f64 = -90.0;
-/// So many times what is kept is far more: which of them are heard is told before the last of them are found and all have
-/// converged (a tile in a room, of whose 84 or 111 modes 32 may be kept).
+/// Factor of what is kept that is far more: which of them are heard is told before the last of them
+/// are found and all have converged (a tile in a room, of whose 84 or 111 modes 32 may be kept).
 const FAR_MORE: usize = 2;
 
-/// What bounds an analysis, in units of samples.
+/// Bounds of an analysis, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Bounds of every parameter.
@@ -38,22 +38,24 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Whether `partials` are so many that most will not be kept.
+    /// Tests whether `partials` are so many that most will not be kept.
     pub(crate) fn far_more_than_kept(&self, partials: usize) -> bool {
         partials > FAR_MORE * self.kept
     }
 
-    /// What bounds the analysis of `segment`, which begins `offset` samples after the onset.
+    /// Bounds of the analysis of `segment`, which begins `offset` samples after the onset.
     pub(crate) fn of(segment: &[f64], offset: usize, recording: &Recording, options: &FitOptions) -> Self {
         let rate = recording.sample_rate_hz;
         let peak = segment.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-        // Modes outside the band are found as well, or what they leave would be taken for noise in it.
+        // Modes outside the band are found as well, or what they leave would be taken for noise in
+        // it.
         let low = options.band_hz.0.min(LOWEST_HZ);
         Self {
             bounds: Bounds {
                 omega_low: 2.0 * PI * low.max(1.0) / rate,
                 omega_high: 2.0 * PI * 0.49,
-                // An undamped tone is fitted as it is; what is written down must die some day (`suspicion`).
+                // An undamped tone is fitted as it is; what is written down must die some day
+                // (`suspicion`).
                 delta_low: 1e-3 * LEAST_DECAY_PER_S / rate,
                 delta_high: (options.fastest_decay_per_s / rate).min(BACK_NEPERS / offset.max(1) as f64),
                 amplitude_high: LARGEST_AMPLITUDE * peak,

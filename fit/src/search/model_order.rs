@@ -1,13 +1,13 @@
 //! Model order of a band, the number of its exponentials: a gate, then the edge of the noise.
 //!
-//! *Gate.* A band is looked at only if a periodogram (over the full, half, quarter or eighth window,
-//! for modes that die early) peaks in its central half above what q samples of noise reach,
-//! σ √(q (ln q + 4)) — more than 4 where a level has so many bands that noise would open more than a few —
-//! and above what the strongest band leaks into it.
+//! *Gate.* A band is looked at only if a periodogram (over the full, half, quarter or eighth
+//! window, for modes that die early) peaks in its central half above what q samples of noise reach,
+//! σ √(q (ln q + 4)) — more than 4 where a level has so many bands that noise would open more than
+//! a few — and above what the strongest band leaks into it.
 //!
-//! *Order.* The number of singular values of the L × M Hankel matrix above 1.05 σ (√L + √M), the edge
-//! a random matrix has. It errs towards too many; significance is tested afterwards on the joint fit,
-//! where it can be done properly ([`crate::proof::pruning`]).
+//! *Order.* The number of singular values of the L × M Hankel matrix above 1.05 σ (√L + √M), the
+//! edge a random matrix has. It errs towards too many; significance is tested afterwards on the
+//! joint fit, where it can be done properly ([`crate::proof::pruning`]).
 
 use asperity_fft::{Fft, FftPlanner};
 use nalgebra::Complex;
@@ -17,13 +17,15 @@ type C = Complex<f64>;
 
 /// Largest order of one band.
 pub const MAX_ORDER: usize = 60;
-/// Half width of the kept part of a band, as a fraction of the decimated rate (a quarter, and a margin).
+/// Half width of the kept part of a band, as a fraction of the decimated rate (a quarter, and a
+/// margin).
 pub const KEPT_HALF_WIDTH: f64 = 0.27;
-/// How far above ln q, in noise powers, a peak must be: noise opens one band in twenty, and a mode at
-/// the edge of proof (squared amplitude 35 variances) has about 12.
+/// Height over ln q, in noise powers, that a peak must have: noise opens one band in twenty, and a
+/// mode at the edge of proof (squared amplitude 35 variances) has about 12.
 const GATE_MARGIN: f64 = 4.0;
-/// The same beneath the logarithm of the number of bands: noise opens about twenty of them, however many there
-/// are (a file of 30 s has 8193, and four hundred open bands of noise are all the modes a fit may have).
+/// Height over the logarithm of the number of bands: noise opens about twenty of them, however many
+/// there are (a file of 30 s has 8193, and four hundred open bands of noise are all the modes a fit
+/// may have).
 const OPENED_BY_NOISE: f64 = 2.2;
 /// Gain of the band filter's stop band, doubled: a weaker peak may be another band's.
 const LEAKAGE: f64 = 2e-4;
@@ -73,7 +75,8 @@ impl Gate {
         })
     }
 
-    /// Whether a band with these peaks may hold a mode; `strongest`: the peaks of the strongest band.
+    /// Tests whether a band with these peaks may hold a mode; `strongest`: the peaks of the
+    /// strongest band.
     #[must_use]
     pub fn opens(&self, peaks: &[f64; 4], noise_std: f64, strongest: &[f64; 4]) -> bool {
         PARTS.iter().zip(peaks).zip(strongest).any(|((part, &peak), most)| {

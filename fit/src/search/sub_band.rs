@@ -3,12 +3,14 @@
 //! ```text
 //! y_k[m] = Σ_{i < 15 D} h[i] · x[mD + i] · e^(−jπ k (mD + i)/D)         k = 0 … D
 //! ```
-//! Bands lie rate/(2D) apart and are decimated by D, so each covers twice its spacing and only poles
-//! in its central half are kept. h is a Kaiser window design (β = 8, 15 D taps, half gain at the
-//! decimated Nyquist frequency): flat over the central half, −80 dB where aliases fold onto it. Every
-//! output lies wholly inside the data, which is what keeps exponentials exact: no filter transient.
+//! Bands lie rate/(2D) apart and are decimated by D, so each covers twice its spacing and only
+//! poles in its central half are kept. h is a Kaiser window design (β = 8, 15 D taps, half gain at
+//! the decimated Nyquist frequency): flat over the central half, −80 dB where aliases fold onto it.
+//! Every output lies wholly inside the data, which is what keeps exponentials exact: no filter
+//! transient.
 //!
-//! All bands together cost one fold and one FFT of 2D points an output sample (weighted overlap-add).
+//! All bands together cost one fold and one FFT of 2D points an output sample (weighted
+//! overlap-add).
 
 use asperity_fft::FftPlanner;
 use nalgebra::Complex;

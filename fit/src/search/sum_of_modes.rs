@@ -1,8 +1,9 @@
 //! Damped-sinusoid test: whether a segment is a sum of modes in noise, before anything is fitted.
 //!
-//! Noise and a mode leave the singular values of a band's Hankel matrix apart: one value a mode stands over the noise's
-//! edge ([`crate::search::model_order`]). What a real recording has besides (a room, beats, decays that are no exponentials,
-//! a thousand modes of a plate) lifts all of them. In the dozen strongest bands of the longest level, on average,
+//! Noise and a mode leave the singular values of a band's Hankel matrix apart: one value a mode
+//! stands over the noise's edge ([`crate::search::model_order`]). What a real recording has besides
+//! (a room, beats, decays that are no exponentials, a thousand modes of a plate) lifts all of them.
+//! In the dozen strongest bands of the longest level, on average,
 //!
 //! | | values over the edge |
 //! |---|---|
@@ -11,8 +12,9 @@
 //! | sums of 10–60 modes in 0.15–0.4 s | 1.4–6.2 |
 //! | recordings as short | 18–40 |
 //!
-//! The edge follows noise that is steep over frequency, as it is in the quiet end: rumble under four modes had 18 values
-//! over a smooth one. Where nothing rings ([`crate::proof::ringing`]) there is no sum but the empty one, and no other fit either.
+//! The edge follows noise that is steep over frequency, as it is in the quiet end: rumble under
+//! four modes had 18 values over a smooth one. Where nothing rings ([`crate::proof::ringing`])
+//! there is no sum but the empty one, and no other fit either.
 //!
 //! A wrong *yes* costs time only, for the fit is held against the noise afterwards.
 
@@ -24,15 +26,16 @@ use crate::search::sub_band::Level;
 
 /// Most values over the edge in the bands of a sum of modes.
 const MOST_VALUES: f64 = 6.0;
-/// The same where the longest level is short: its bands are so wide that a sum of many modes has more in each.
+/// Threshold where the longest level is short: its bands are so wide that a sum of many modes has
+/// more in each.
 const MOST_VALUES_SHORT: f64 = 12.0;
 const LONG_DECIMATION: usize = 128;
 /// A longest level shorter than this says nothing.
 const LEAST_DECIMATION: usize = 32;
-/// How many of the strongest bands are looked at.
+/// Number of the strongest bands that are looked at.
 const BANDS: usize = 12;
 
-/// Whether `segment` may be a sum of modes in noise.
+/// Tests whether `segment` may be a sum of modes in noise.
 #[must_use]
 pub fn may_be_sum_of_modes(segment: &[f64], limits: &Limits) -> bool {
     let Some(&longest) = Level::ladder(segment.len()).first() else { return true };

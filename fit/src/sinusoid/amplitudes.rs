@@ -17,8 +17,8 @@ pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
     fit_amplitudes_at_cost(signal, partials, RIDGE);
 }
 
-/// The same beside a `cost` of each partial's own energy, as a part of it, which keeps pairs from growing against each
-/// other.
+/// Amplitudes beside a `cost` of each partial's own energy, as a part of it, which keeps pairs from
+/// growing against each other.
 pub fn fit_amplitudes_at_cost(signal: &[f64], partials: &mut [Partial], cost: f64) {
     let right = DVector::from_iterator(
         2 * partials.len(),

@@ -6,8 +6,9 @@
 //! S_1 = q (S_0 − 1 − (N − 1) E)
 //! S_2 = q (2 S_1 − S_0 + 1 − (N − 1)² E)
 //! ```
-//! The last two follow from summation by parts. Where |1 − w|·N is small they cancel (relative error
-//! ε N/(|1 − w| N)²); there the sum is doubled instead, S(2M) from S(M), which only adds terms.
+//! The last two follow from summation by parts. Where |1 − w|·N is small they cancel (relative
+//! error ε N/(|1 − w| N)²); there the sum is doubled instead, S(2M) from S(M), which only adds
+//! terms.
 
 use nalgebra::Complex;
 
@@ -16,7 +17,8 @@ type C = Complex<f64>;
 /// |1 − w|·N below which the closed forms would lose more than four digits.
 const CANCELLATION: f64 = 0.3;
 
-/// `[S_0, S_1, S_2]` of `w` over `count` terms; `power` is w^count, which callers have as a product.
+/// `[S_0, S_1, S_2]` of `w` over `count` terms; `power` is w^count, which callers have as a
+/// product.
 #[must_use]
 pub fn geometric_sums(w: C, power: C, count: usize) -> [C; 3] {
     let one = C::new(1.0, 0.0);

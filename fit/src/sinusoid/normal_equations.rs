@@ -3,8 +3,8 @@
 //! ```text
 //! A = [ A11 · ; A21 A22 ]    L11 L11ᵀ = A11    L21 L11ᵀ = A21    A22 − L21 L21ᵀ  is factored next
 //! ```
-//! The last product carries nearly all the work and is a matrix product, several times as fast as the same
-//! sum column by column (400 unknowns: a third of the time).
+//! The last product carries nearly all the work and is a matrix product, several times as fast as
+//! the same sum column by column (400 unknowns: a third of the time).
 
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, Dyn, SMatrix};
 
@@ -37,8 +37,8 @@ impl Scaled {
         self.factor.solve(&right.component_mul(&self.scale)).component_mul(&self.scale)
     }
 
-    /// The `N` × `N` blocks on the diagonal of the inverse of the unscaled matrix: A⁻¹ = L⁻ᵀ L⁻¹, of which a
-    /// block is the products of `N` columns of L⁻¹.
+    /// The `N` × `N` blocks on the diagonal of the inverse of the unscaled matrix: A⁻¹ = L⁻ᵀ L⁻¹,
+    /// of which a block is the products of `N` columns of L⁻¹.
     #[must_use]
     pub fn inverse_blocks<const N: usize>(&self) -> Vec<SMatrix<f64, N, N>> {
         let inverse = inverse_of_lower(self.factor.l_dirty());

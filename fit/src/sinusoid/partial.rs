@@ -35,7 +35,7 @@ impl Partial {
         Complex::from_polar((-self.delta * n).exp(), self.omega * n)
     }
 
-    /// The same sinusoid seen from `n` samples later (earlier when negative).
+    /// Sinusoid seen from `n` samples later (earlier when negative).
     #[must_use]
     pub fn moved(&self, n: f64) -> Self {
         Self { c: self.c * self.power(n), ..*self }

@@ -3,9 +3,9 @@
 //! ```text
 //! P_p(k) = Σ_n n^p s[n] z_kⁿ  (p = 0, 1)          x[n] = Re Σ_k c_k z_kⁿ
 //! ```
-//! Both are matrix products when n is split into n = b·B + m: the powers z^m are one small table, the
-//! signal is its own matrix (no copy), and z^(bB) is applied afterwards, B times more rarely. This is
-//! what makes joint refinement of 100 modes over 2 s cost milliseconds a step.
+//! Both are matrix products when n is split into n = b·B + m: the powers z^m are one small table,
+//! the signal is its own matrix (no copy), and z^(bB) is applied afterwards, B times more rarely.
+//! This is what makes joint refinement of 100 modes over 2 s cost milliseconds a step.
 
 use crate::sinusoid::partial::Partial;
 use nalgebra::{Complex, DMatrix, DMatrixView};
@@ -15,7 +15,7 @@ type C = Complex<f64>;
 /// Samples in a block; the table of powers of 100 modes then fits into the second-level cache.
 const BLOCK: usize = 128;
 
-/// What is left of a partial when it is taken as over: 1e-12, far below the rounding of any recording.
+/// Rest of a partial at which it is taken as over: 1e-12, far below the rounding of any recording.
 const OVER_NEPERS: f64 = 27.6;
 
 /// Blocks of samples in which the same partials still sound, when these are sorted by damping.
@@ -78,7 +78,8 @@ fn correlate_rows<const ROWS: usize>(signal: &[f64], partials: &[Partial]) -> Ve
         let products = rows * view.columns(stretch.from, stretch.to - stretch.from);
         let sounding = &order[..stretch.sounding];
         let from = (stretch.from * BLOCK) as f64;
-        // Of each: the sums so far, z to the block's first sample, and what takes that to the next block.
+        // Of each: the sums so far, z to the block's first sample, and what takes that to the next
+        // block.
         let mut sums: Vec<([C; 2], C, C)> = sounding
             .iter()
             .map(|&k| (out[k], partials[k].power(from), partials[k].power(BLOCK as f64)))

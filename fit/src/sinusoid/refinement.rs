@@ -11,9 +11,9 @@
 //! | ω | j c | 1 |
 //! | δ | −c | 1 |
 //!
-//! so JᵀJ needs no samples: ⟨a, b⟩ = ½ Re( g_a g_b S_p(z_a z_b) + g_a ḡ_b S_p(z_a z̄_b) ), and Jᵀr is
-//! [`correlate`]. Levenberg–Marquardt (Marquardt 1963) with column scaling; a step moves a mode by at
-//! most half of its half-bandwidth.
+//! so JᵀJ needs no samples: ⟨a, b⟩ = ½ Re( g_a g_b S_p(z_a z_b) + g_a ḡ_b S_p(z_a z̄_b) ), and Jᵀr
+//! is [`correlate`]. Levenberg–Marquardt (Marquardt 1963) with column scaling; a step moves a mode
+//! by at most half of its half-bandwidth.
 
 use crate::sinusoid::amplitudes::fit_amplitudes;
 use crate::sinusoid::geometric_sum::geometric_sums;
@@ -24,7 +24,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// What a mode of a real recording may be; everything outside is pulled back after every step.
+/// Bounds of a mode of a real recording; everything outside is pulled back after every step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Lowest ω, radians a sample.
@@ -37,8 +37,9 @@ pub struct Bounds {
     pub delta_high: f64,
     /// Largest |c| at the start of the segment: stops pairs of giants that cancel each other.
     pub amplitude_high: f64,
-    /// Cost of a partial's own energy, as a part of it, beside the squared residual: 0 for the likeliest fit;
-    /// a thousandth keeps pairs from growing against each other where nothing is an exponential.
+    /// Cost of a partial's own energy, as a part of it, beside the squared residual: 0 for the
+    /// likeliest fit; a thousandth keeps pairs from growing against each other where nothing is an
+    /// exponential.
     pub energy_cost: f64,
 }
 
@@ -56,7 +57,7 @@ impl Bounds {
         }
     }
 
-    /// Whether a partial is within all of them.
+    /// Tests whether a partial is within all of them.
     #[must_use]
     pub fn allow(&self, partial: &Partial) -> bool {
         (self.omega_low..=self.omega_high).contains(&partial.omega)
@@ -117,7 +118,7 @@ pub fn gradient(residual: &[f64], partials: &[Partial]) -> DVector<f64> {
     out
 }
 
-/// What a refinement came to.
+/// Result of a refinement.
 #[derive(Debug, Clone)]
 pub struct Refined {
     /// Sum of squares of the residual.
@@ -159,7 +160,8 @@ pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, step
             }
             ridge *= 30.0;
         }
-        // Less than a hundredth of one noise variance: a tenth of a bound, shared by all parameters.
+        // Less than a hundredth of one noise variance: a tenth of a bound, shared by all
+        // parameters.
         if before - current.cost <= 1e-2 * current.cost / signal.len() as f64 {
             break;
         }

@@ -1,17 +1,18 @@
-//! The analysis of a segment that is a sum of modes in noise: levels from long to short, joint refinement, proof, once
-//! more. It ends at the statistical bound; a segment that is no such sum is told apart ([`crate::search::sum_of_modes`] before,
-//! [`Analysis::explained`] after) and left to [`crate::ways::tail_to_attack`].
+//! The analysis of a segment that is a sum of modes in noise: levels from long to short, joint
+//! refinement, proof, once more. It ends at the statistical bound; a segment that is no such sum is
+//! told apart ([`crate::search::sum_of_modes`] before, [`Analysis::explained`] after) and left to
+//! [`crate::ways::tail_to_attack`].
 //!
 //! Nothing of this is done where nothing rings ([`crate::proof::ringing`]).
 //!
-//! 1. Levels D = 512, 128, 32, 8, 2 (at 2 s and 44.1 kHz; the first leaves about 170 samples a band).
-//!    At each: split what is unexplained into bands, take the poles of every band whose gate opens,
-//!    join them to what is known, refit all jointly on the part of the segment after the level's span,
-//!    and remove what is not proven. Long modes are thus known before short ones are looked for, and
-//!    one window never has to suit both.
+//! 1. Levels D = 512, 128, 32, 8, 2 (at 2 s and 44.1 kHz; the first leaves about 170 samples a
+//!    band). At each: split what is unexplained into bands, take the poles of every band whose gate
+//!    opens, join them to what is known, refit all jointly on the part of the segment after the
+//!    level's span, and remove what is not proven. Long modes are thus known before short ones are
+//!    looked for, and one window never has to suit both.
 //! 2. Joint refinement over the whole segment, proof, refinement.
-//! 3. The same on the residual, with the noise measured again in the residual, until nothing is added, or until what is
-//!    there explains a segment that dies away and is far more than is kept.
+//! 3. The same on the residual, with the noise measured again in the residual, until nothing is
+//!    added, or until what is there explains a segment that dies away and is far more than is kept.
 //! 4. Proof once more where the noise is steep over frequency.
 
 use crate::noise::noise_floor::NoiseFloor;
@@ -28,7 +29,8 @@ use crate::sinusoid::refinement::refine;
 use crate::ways::merging::merge_cancelling;
 use std::f64::consts::PI;
 
-/// A segment of so many times the energy that its quiet end has is one that dies away, and no noise.
+/// A segment of so many times the energy that its quiet end has is one that dies away, and no
+/// noise.
 const DYING: f64 = 100.0;
 /// Most passes over the levels.
 const PASSES: usize = 3;
@@ -40,19 +42,19 @@ const MISFIT: f64 = 2.0;
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
-/// Until they are proven there may be this many times as many partials as are allowed in the end: a hundred modes at
-/// 60 dB need 1.6 times the usual 150.
+/// Until they are proven there may be this many times as many partials as are allowed in the end: a
+/// hundred modes at 60 dB need 1.6 times the usual 150.
 const UNPROVEN: f64 = 2.0;
-/// The same where fewer than `FEW` are asked for: then most recordings hold more than that, and the sooner this shows the
-/// likelier the few are the same in every strike of one bell.
+/// Limit where fewer than `FEW` are asked for: then most recordings hold more than that, and the
+/// sooner this shows the likelier the few are the same in every strike of one bell.
 const UNPROVEN_FEW: f64 = 1.5;
 const FEW: usize = 100;
 const FINAL_STEPS: usize = 12;
-/// Of the last refinement of what is a sum of modes: until it has converged, which modes closer than their
-/// bandwidths, whose valley is narrow and bent, may take long to.
+/// Rounds of the last refinement of what is a sum of modes: until it has converged, which modes
+/// closer than their bandwidths, whose valley is narrow and bent, may take long to.
 const LAST_STEPS: usize = 200;
 
-/// What an analysis found.
+/// Result of an analysis.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// The partials, amplitudes at the first sample of the segment.
@@ -61,20 +63,21 @@ pub struct Analysis {
     pub noise: NoiseFloor,
     /// Segment minus partials.
     pub residual: Vec<f64>,
-    /// Whether more was there than `max_partials` allowed.
+    /// True where more was there than `max_partials` allowed.
     pub capped: bool,
-    /// Whether the partials leave no more than noise.
+    /// True where the partials leave no more than noise.
     pub explained: bool,
 }
 
 impl Analysis {
-    /// Of a segment in which nothing rings.
+    /// Analysis of a segment in which nothing rings.
     pub(crate) fn nothing(segment: &[f64], noise: NoiseFloor) -> Self {
         Self { partials: Vec::new(), noise, residual: segment.to_vec(), capped: false, explained: true }
     }
 }
 
-/// Analyses `segment`; `progress` hears the part done, 0 to 1. What explains it is proven, but not converged: [`settle`].
+/// Analyses `segment`; `progress` hears the part done, 0 to 1. What explains it is proven, but not
+/// converged: [`settle`].
 pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let mut work = Work {
         segment,
@@ -183,8 +186,9 @@ impl Work<'_> {
         self.partials = partials;
     }
 
-    /// Whether the residual, within the band looked at, is more than what the quiet end of the segment has
-    /// of noise. Steep noise that goes on as it began is noise, too, although no smooth floor explains it.
+    /// Tests whether the residual, within the band looked at, is more than what the quiet end of
+    /// the segment has of noise. Steep noise that goes on as it began is noise, too, although no
+    /// smooth floor explains it.
     fn leaves_more_than_noise(&self) -> bool {
         let residual = subtract(self.segment, &self.partials);
         if is_steep_noise(&residual, self.limits.rate_hz, self.limits.least_noise) {
@@ -246,8 +250,9 @@ impl Work<'_> {
         self.noise = NoiseFloor::of_residual(&residual, self.limits.rate_hz, self.limits.least_noise);
     }
 
-    /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says how
-    /// many it proposed. `whole`: refit over the whole segment, not only after the level's span.
+    /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says
+    /// how many it proposed. `whole`: refit over the whole segment, not only after the level's
+    /// span.
     fn level(&mut self, level: Level, whole: bool) -> usize {
         let mut proposed = 0;
         for _ in 0..LEVEL_ROUNDS {

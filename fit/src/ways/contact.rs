@@ -1,21 +1,23 @@
 //! Striker release: from there on a recording is a free decay.
 //!
-//! A sum of p damped sinusoids obeys a linear recurrence of order 2p in either direction. Learnt from a
-//! stretch some milliseconds after the onset and run *backwards*,
+//! A sum of p damped sinusoids obeys a linear recurrence of order 2p in either direction. Learnt
+//! from a stretch some milliseconds after the onset and run *backwards*,
 //!
 //! ```text
 //! e[n] = x[n] − Σ_{k=1…P} a_k x[n + k]
 //! ```
-//! uses only samples later than n, so it stays small for as long as everything from n on is ringing and
-//! jumps where the striker still pushes. (A forward predictor would answer for P samples to every push.)
-//! The coefficients are Kumaresan and Tufts' (1983) backward ones by covariance least squares; a ridge of
-//! the noise keeps them from modelling it.
+//! uses only samples later than n, so it stays small for as long as everything from n on is ringing
+//! and jumps where the striker still pushes. (A forward predictor would answer for P samples to
+//! every push.) The coefficients are Kumaresan and Tufts' (1983) backward ones by covariance least
+//! squares; a ridge of the noise keeps them from modelling it.
 //!
-//! A recurrence of this order cannot follow more modes than half of it, nor what is no sum of modes: what is found here is
-//! a proposal, and `ways` asks the fit whether it is true. The modes of that fit, continued backwards, then tell the end
-//! itself: they are all of the body, so what they leave before it is the push ([`release_samples`]).
+//! A recurrence of this order cannot follow more modes than half of it, nor what is no sum of
+//! modes: what is found here is a proposal, and `ways` asks the fit whether it is true. The modes
+//! of that fit, continued backwards, then tell the end itself: they are all of the body, so what
+//! they leave before it is the push ([`release_samples`]).
 //!
-//! Measured: half-sine forces of 0.3–3 ms on bodies of 6–24 modes end within 0.2 ms of where they do.
+//! Measured: half-sine forces of 0.3–3 ms on bodies of 6–24 modes end within 0.2 ms of where they
+//! do.
 
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::projection::synthesise;
@@ -23,21 +25,23 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Longest order; 80 modes at most matter in a tenth of a second.
 const ORDER: usize = 160;
-/// Where the recurrence is learnt from: first this long after the onset; later if the contact lasts until then.
+/// Beginning of the span the recurrence is learnt from: first this long after the onset; later if
+/// the contact lasts until then.
 const LEARNT_FROM_S: [f64; 2] = [0.004, 0.02];
-/// How long the stretch is.
+/// Length of the stretch.
 const LEARNT_FOR_S: f64 = 0.12;
 /// Smoothing of the squared error.
 const SMOOTHING_S: f64 = 0.0002;
 /// A push is this many times what the learnt stretch leaves at its loudest.
 const EXCESS: f64 = 10.0;
-/// No striker touches longer; what is not ringing yet by then is the room or the instrument's resonator.
+/// No striker touches longer; what is not ringing yet by then is the room or the instrument's
+/// resonator.
 pub const LONGEST_S: f64 = 0.005;
 /// Ridge relative to the mean square, for files without noise.
 const RIDGE: f64 = 1e-10;
 
-/// Samples from `strike`'s first one to the end of the contact; 0 when it rings from the start or when the
-/// recording is too short or too noisy to say. `noise_variance` is that of the recording.
+/// Samples from `strike`'s first one to the end of the contact; 0 when it rings from the start or
+/// when the recording is too short or too noisy to say. `noise_variance` is that of the recording.
 #[must_use]
 pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usize {
     let mut found = 0;
@@ -57,8 +61,8 @@ pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usi
     found.min((LONGEST_S * rate_hz) as usize)
 }
 
-/// Samples from `sound`'s first one to where `partials` (amplitudes at sample `late`), continued backwards, leave more than
-/// noise of `variance`: where the push ends that was over by `late`.
+/// Samples from `sound`'s first one to where `partials` (amplitudes at sample `late`), continued
+/// backwards, leave more than noise of `variance`: where the push ends that was over by `late`.
 #[must_use]
 pub fn release_samples(
     sound: &[f64],

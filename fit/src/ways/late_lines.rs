@@ -1,10 +1,11 @@
 //! Late lines: what still rings when everything else is over, and no stage has kept.
 //!
-//! The stages of [`crate::ways::tail_to_attack`] lose quiet partials that are heard at the end. Most fall too fast to be
-//! continued back from the stage that sees them, and in the later ones they are bent towards the attack, which is a
-//! thousand times as loud (of 14 lost in three cowbells and a bongo, 11; the others fell to the cap of a stage of which
-//! two thirds were given up afterwards). So at the end, with all modes in place, the sound after 0.2 s is looked at once more.
-//! A line that it still holds becomes a mode if
+//! The stages of [`crate::ways::tail_to_attack`] lose quiet partials that are heard at the end.
+//! Most fall too fast to be continued back from the stage that sees them, and in the later ones
+//! they are bent towards the attack, which is a thousand times as loud (of 14 lost in three
+//! cowbells and a bongo, 11; the others fell to the cap of a stage of which two thirds were given
+//! up afterwards). So at the end, with all modes in place, the sound after 0.2 s is looked at once
+//! more. A line that it still holds becomes a mode if
 //!
 //! | it is | that is |
 //! |---|---|
@@ -12,7 +13,8 @@
 //! | alone | no mode within three half widths of the two has more than a hundredth of its energy there |
 //! | paid for | continued back to the onset, all together raise the squared residual of the sound by 2 % (0.1 dB) at most |
 //!
-//! The modes that are there stay as they are. Where they leave less than 32 dB of that part nothing is looked for.
+//! The modes that are there stay as they are. Where they leave less than 32 dB of that part nothing
+//! is looked for.
 
 use crate::search::limits::Limits;
 use crate::search::sub_band::Level;
@@ -23,10 +25,10 @@ use crate::ways::merging::MERGED_LOSS;
 use crate::ways::ranking::keep_heard;
 use crate::ways::rounds::{Rounds, add_proposed};
 
-/// Where the late part begins, s after the onset; the fewest samples of it.
+/// Beginning of the late part, s after the onset; the fewest samples of it.
 const FROM_S: f64 = 0.2;
 const SHORTEST: usize = 4096;
-/// What must be left of it, as a part of its energy.
+/// Least remainder, as a part of its energy.
 const LEFT: f64 = 6e-4;
 /// Levels that are looked at: lines are narrow.
 const LEVELS: usize = 2;
@@ -36,7 +38,8 @@ const UNREFINED: f64 = 1.5;
 const LEVEL_STEPS: usize = 5;
 /// A mode is proven from twice its standard deviation on.
 const ROUNDS: Rounds = Rounds { most: 3, merged_loss: MERGED_LOSS, proven: 4.0, steps: 3 };
-/// By how many nepers a line may have fallen when the late part begins, and what that costs of its own energy.
+/// By how many nepers a line may have fallen when the late part begins, and what that costs of its
+/// own energy.
 const BACK_NEPERS: f64 = 4.5;
 const ENERGY_COST: f64 = 1e-3;
 /// Heard, alone and paid for, as in the table.
@@ -81,7 +84,7 @@ fn lines(late: &[f64], start: usize, places: usize, limits: &Limits) -> Vec<Part
     found
 }
 
-/// Those of `lines` that are heard beside the `known` modes and stand alone among them, the loudest first.
+/// Lines that are heard beside the `known` modes and stand alone among them, the loudest first.
 fn heard_alone(mut lines: Vec<Partial>, known: &[Partial], count: usize) -> Vec<Partial> {
     let loudest = known.iter().chain(&lines).map(|p| p.energy(count)).fold(0.0, f64::max);
     let alone = |line: &Partial| {
@@ -96,7 +99,7 @@ fn heard_alone(mut lines: Vec<Partial>, known: &[Partial], count: usize) -> Vec<
     lines
 }
 
-/// Those of `lines`, at most `places`, that `residual` can pay for, in their order.
+/// Lines, at most `places`, that `residual` can pay for, in their order.
 fn paid_for(mut lines: Vec<Partial>, mut residual: Vec<f64>, places: usize) -> Vec<Partial> {
     let most = (1.0 + COST) * energy(&residual);
     let mut taken = 0;

@@ -1,18 +1,19 @@
 //! One resonance, one mode: partials that only together describe one decay become one.
 //!
 //! A real resonance is an exponential to 20–40 dB. Over noise far below that, every criterion that
-//! knows noise alone (noise edge, Wald, Rao) spends two or three partials on the rest: a decay of 0.4 dB
-//! rms off the exponential came out as three modes within 1.4 Hz, the strongest with half its true T60.
-//! What decides here is how much of the *resonance* is lost. For partials that lie within each other's
-//! half-bandwidths,
+//! knows noise alone (noise edge, Wald, Rao) spends two or three partials on the rest: a decay of
+//! 0.4 dB rms off the exponential came out as three modes within 1.4 Hz, the strongest with half
+//! its true T60. What decides here is how much of the *resonance* is lost. For partials that lie
+//! within each other's half-bandwidths,
 //!
 //! ```text
 //! s[n] = Σ c_i z_iⁿ      loss = min_{c, z} ‖s − c zⁿ‖² / ‖s‖²
 //! ```
-//! all in closed form ([`geometric_sums`]); the group that loses least is tried first, and stays merged if
-//! the refitted loss is under [`MERGED_LOSS`]. Real doublets beat: merging two equal modes 1 Hz apart with a T60 of
-//! 2 s loses 5 %. Used only on recordings whose residual is more than noise, so that what *is*
-//! a sum of exponentials in noise keeps every mode that the data prove.
+//! all in closed form ([`geometric_sums`]); the group that loses least is tried first, and stays
+//! merged if the refitted loss is under [`MERGED_LOSS`]. Real doublets beat: merging two equal
+//! modes 1 Hz apart with a T60 of 2 s loses 5 %. Used only on recordings whose residual is more
+//! than noise, so that what *is* a sum of exponentials in noise keeps every mode that the data
+//! prove.
 
 use crate::proof::suspicion::cancels;
 use crate::sinusoid::geometric_sum::geometric_sums;
@@ -25,10 +26,10 @@ type C = Complex<f64>;
 
 /// Largest part of a resonance's energy that its one mode may miss: 18 dB, a beat of 2 dB.
 pub const MERGED_LOSS: f64 = 0.016;
-/// The same for two that all but cancel: what a mode plus rounding turns into when nothing else is left to
-/// explain. 50 dB, far below what a real doublet loses.
+/// Limit for two that all but cancel: what a mode plus rounding turns into when nothing else is
+/// left to explain. 50 dB, far below what a real doublet loses.
 const CANCELLED_LOSS: f64 = 1e-5;
-/// What is tried: the closed form knows nothing of what neighbours can take over.
+/// Factor that is tried: the closed form has nothing of what neighbours can take over.
 const PROPOSED_LOSS: f64 = 0.06;
 /// Refinement steps of a trial.
 const REFIT_STEPS: usize = 3;
@@ -42,7 +43,8 @@ const HALVINGS: usize = 18;
 /// Merges what is one resonance in `signal`; says how many partials went.
 ///
 /// The closed form proposes; what decides is the squared residual after the merged partial and its
-/// neighbours have been refitted, which may rise by the part `most_lost` of the resonance's energy ([`MERGED_LOSS`], for one).
+/// neighbours have been refitted, which may rise by the part `most_lost` of the resonance's energy
+/// ([`MERGED_LOSS`], for one).
 pub fn merge_resonances(
     signal: &[f64],
     partials: &mut Vec<Partial>,
@@ -52,8 +54,8 @@ pub fn merge_resonances(
     merge(signal, partials, bounds, most_lost, LARGEST_GROUP, |_| true)
 }
 
-/// Merges pairs of giants that all but cancel and are one mode to 50 dB, in any recording: below a noise of
-/// −120 dB, rounding alone makes them significant. Says how many partials went.
+/// Merges pairs of giants that all but cancel and are one mode to 50 dB, in any recording: below a
+/// noise of −120 dB, rounding alone makes them significant. Says how many partials went.
 pub fn merge_cancelling(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds) -> usize {
     merge(signal, partials, bounds, CANCELLED_LOSS, 2, |pair| cancels(&pair[0], &pair[1]))
 }
@@ -153,7 +155,8 @@ fn proposals(
     groups
 }
 
-/// Whether two partials lie within their half-bandwidths, or within three of the narrower one.
+/// Tests whether two partials lie within their half-bandwidths, or within three of the narrower
+/// one.
 fn touches(a: &Partial, b: &Partial, count: usize) -> bool {
     let gap = (a.omega - b.omega).abs();
     gap <= (a.delta + b.delta + 1.0 / count as f64).max(HALF_WIDTHS * a.delta.min(b.delta))
@@ -169,7 +172,8 @@ fn around(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
     near
 }
 
-/// The part of the energy of a sum that the one partial nearest to it misses, that energy, and the partial.
+/// The part of the energy of a sum that the one partial nearest to it misses, that energy, and the
+/// partial.
 pub(crate) fn single(parts: Vec<Partial>, count: usize) -> (f64, f64, Partial) {
     let widest = parts.iter().map(|p| p.delta).fold(1.0 / count as f64, f64::max);
     let sum = Sum { parts, count };

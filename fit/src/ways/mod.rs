@@ -1,21 +1,25 @@
-//! Model selection: a strike is a sum of modes in noise, a push and then a sum of modes, or neither.
+//! Model selection: a strike is a sum of modes in noise, a push and then a sum of modes, or
+//! neither.
 //!
-//! *A sum of modes* ([`crate::ways::analysis`]) leaves noise from the onset on. *A push* leaves noise only from where the
-//! striker lets go: while it pushes, a body does not ring freely (1 ms of half-sine force fitted as ringing: 27 dB of
-//! resynthesis, 75 dB when it is left out). *Anything else* is fitted from its tail ([`crate::ways::tail_to_attack`]).
+//! *A sum of modes* ([`crate::ways::analysis`]) leaves noise from the onset on. *A push* leaves
+//! noise only from where the striker lets go: while it pushes, a body does not ring freely (1 ms of
+//! half-sine force fitted as ringing: 27 dB of resynthesis, 75 dB when it is left out). *Anything
+//! else* is fitted from its tail ([`crate::ways::tail_to_attack`]).
 //!
-//! The engine strikes a body at the onset, where the modes after a push are a guess continued backwards. So no contact
-//! is believed without proof:
+//! The engine strikes a body at the onset, where the modes after a push are a guess continued
+//! backwards. So no contact is believed without proof:
 //!
-//! 1. From the onset on, modes leave more than noise, or a few of them are only the push in disguise: over when it is,
-//!    or as fast as any may be ([`disguised`]).
+//! 1. From the onset on, modes leave more than noise, or a few of them are only the push in
+//!    disguise: over when it is, or as fast as any may be ([`disguised`]).
 //! 2. From some proposed end of it on ([`crate::ways::contact`]) modes leave no more than noise.
 //! 3. They are fewer, by more than those that such a late beginning cannot see ([`saves`]).
 //! 4. A fit from the onset on leaves more of the sound, or 20 dB more of what follows the push; or
 //!    both leave noise, and so little of it that a push is told from fast modes (40 dB). Two stones
-//!    of four were fitted from 4.99 ms on, 9.8 and 9.2 dB from the onset, and 20.7 and 18.0 from it.
+//!    of four were fitted from 4.99 ms on, 9.8 and 9.2 dB from the onset, and 20.7 and 18.0 from
+//!    it.
 //!
-//! Then the end is where those modes, continued backwards, first leave more than noise ([`release_samples`]).
+//! Then the end is where those modes, continued backwards, first leave more than noise
+//! ([`release_samples`]).
 
 pub(crate) mod analysis;
 mod contact;
@@ -44,11 +48,11 @@ const MODES_OF_A_SUM: usize = 150;
 const LIMITED_STEPS: usize = 12;
 /// Rounds of merging before.
 const LIMITED_ROUNDS: usize = 6;
-/// A mode that falls by so many nepers within the contact is over when that is; where this part of the modes is, they may
-/// be the push.
+/// A mode that falls by so many nepers within the contact is over when that is; where this part of
+/// the modes is, they may be the push.
 const OVER_NEPERS: f64 = 1.0;
 const DISGUISED_SHARE: f64 = 0.25;
-/// The same of so many modes that decay as fast as any may, to this factor.
+/// Number of modes that decay as fast as any may, to this factor.
 const FASTEST: f64 = 0.95;
 const FASTEST_MODES: usize = 3;
 /// A push must save so many modes, and this part of them.
@@ -56,8 +60,9 @@ const SAVED_MODES: usize = 4;
 const SAVED_SHARE: f64 = 0.125;
 /// Most modes after a push that is looked for where those from the onset on are too many.
 const MODES_OF_A_PUSH: usize = 80;
-/// A mode this part of as loud as any may be cancels others, as those do that stand for a push. Where there are more modes
-/// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
+/// A mode this part of as loud as any may be cancels others, as those do that stand for a push.
+/// Where there are more modes than that and fewer giants, it is a recording of many modes, and
+/// another fit would take as long.
 const GIANT: f64 = 0.2;
 const GIANTS: usize = 5;
 /// Modes that leave so many times as much of what follows a push are not the body's: 20 dB.
@@ -66,12 +71,13 @@ const BY_FAR: f64 = 100.0;
 /// from the onset needs to leave as little are the push in disguise: 40 dB. Made pushes leave 57 to
 /// 60 dB; stones that were no pushes, 15 to 21.
 const FINE: f64 = 1e4;
-/// Modes of a sum are nearer than those of the tail even if they leave 3 dB more: a resonance is one of them.
+/// Modes of a sum are nearer than those of the tail even if they leave 3 dB more: a resonance is
+/// one of them.
 const CONVERGED: f64 = 2.0;
 /// An end of the contact this much earlier than where the fit began is worth a fit from there, s.
 const EARLIER_S: f64 = 0.000_15;
 
-/// What the fit of one strike may use: the sound from its onset on, and what was asked for.
+/// Material for the fit of one strike: the sound from its onset on, and what was asked for.
 pub(crate) struct Sound<'a> {
     pub(crate) samples: &'a [f64],
     pub(crate) recording: &'a Recording,
@@ -79,7 +85,8 @@ pub(crate) struct Sound<'a> {
 }
 
 impl Sound<'_> {
-    /// Modes from the onset on, or from the end of a contact that is proven; and the samples until there.
+    /// Modes from the onset on, or from the end of a contact that is proven; and the samples until
+    /// there.
     pub(crate) fn analysed(&self, progress: &mut dyn FnMut(f64)) -> (usize, Analysis) {
         let limits = self.limits(0);
         if !may_be_sum_of_modes(self.samples, &limits) {
@@ -92,7 +99,8 @@ impl Sound<'_> {
             return (0, if right { whole } else { self.nearer(whole, &limits, progress) });
         }
         if let Some(pushed) = self.pushed(&whole, progress) {
-            // Of two that leave noise, fewer modes are the body's where the noise is low enough to tell.
+            // Of two that leave noise, fewer modes are the body's where the noise is low enough to
+            // tell.
             let proven = right && self.fine(&pushed);
             let struck = if right { whole } else { self.nearer(whole, &limits, progress) };
             return if proven || self.worse_from_the_onset(&struck, &pushed) { pushed } else { (0, struck) };
@@ -100,20 +108,22 @@ impl Sound<'_> {
         (0, if right { whole } else { self.nearer(whole, &limits, progress) })
     }
 
-    /// Is true of a push whose modes leave so little of what follows it that those it saves are its own.
+    /// Is true of a push whose modes leave so little of what follows it that those it saves are its
+    /// own.
     fn fine(&self, (offset, pushed): &(usize, Analysis)) -> bool {
         energy(&self.samples[*offset..]) > FINE * energy(&pushed.residual)
     }
 
-    /// Is true where modes from the onset on explain less than those of a push do: of all the sound,
-    /// or by far of what follows the push.
+    /// Is true where modes from the onset on explain less than those of a push do: of all the
+    /// sound, or by far of what follows the push.
     fn worse_from_the_onset(&self, struck: &Analysis, (offset, pushed): &(usize, Analysis)) -> bool {
         let early: Vec<Partial> = pushed.partials.iter().map(|p| p.moved(-(*offset as f64))).collect();
         let (left, pushed) = (subtract(self.samples, &struck.partials), subtract(self.samples, &early));
         energy(&left) > energy(&pushed) || energy(&left[*offset..]) > BY_FAR * energy(&pushed[*offset..])
     }
 
-    /// Of `whole` and a fit from the tail, neither of which is right, the one that leaves less.
+    /// Better one of `whole` and a fit from the tail, neither of which is right: the one that
+    /// leaves less.
     fn nearer(&self, whole: Analysis, limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
         let staged = analyse_from_the_tail(self.samples, limits, progress);
         let left = |analysis: &Analysis| energy(&analysis.residual);
@@ -141,7 +151,8 @@ impl Sound<'_> {
         Limits::of(&self.samples[offset..], offset, self.recording, self.options)
     }
 
-    /// Where the striker may let go, samples from the onset: as the recurrence has it, and as late as any may.
+    /// Times at which the striker may let go, samples from the onset: as the recurrence has it, and
+    /// as late as any may.
     fn proposed(&self) -> [usize; 2] {
         let rate = self.recording.sample_rate_hz;
         let noise = NoiseFloor::estimate(self.samples, rate, self.recording.quantum.powi(2) / 12.0);
@@ -150,7 +161,7 @@ impl Sound<'_> {
             .map(|contact| if contact + FEWEST_SAMPLES <= self.samples.len() { contact } else { 0 })
     }
 
-    /// Whether modes of a fit from the onset may be a push of `contact` samples in disguise.
+    /// Tests whether modes of a fit from the onset may be a push of `contact` samples in disguise.
     fn disguised(&self, whole: &Analysis, contact: usize) -> bool {
         let fastest = FASTEST * self.options.fastest_decay_per_s / self.recording.sample_rate_hz;
         let over = whole.partials.iter().filter(|p| p.delta * contact as f64 > OVER_NEPERS).count();
@@ -201,8 +212,8 @@ fn energy(samples: &[f64]) -> f64 {
     samples.iter().map(|x| x * x).sum()
 }
 
-/// Whether a fit from the end of a push on needs so many modes less than one from the onset that there was a push. A late
-/// beginning alone hides a few fast modes.
+/// Tests whether a fit from the end of a push on needs so many modes less than one from the onset
+/// that there was a push. A late beginning alone hides a few fast modes.
 fn saves(whole: &Analysis, pushed: &Analysis) -> bool {
     let most = whole.partials.len();
     pushed.partials.len() + SAVED_MODES.max((SAVED_SHARE * most as f64) as usize) <= most

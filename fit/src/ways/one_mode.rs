@@ -1,9 +1,10 @@
 //! One mode for one resonance, at the end of an analysis from the tail.
 //!
-//! The stages each describe a resonance as it is from their beginning on, so that one whose first milliseconds are no
-//! part of its decay (the striker, the room) comes out as its mode and a few faster ones beside it, which sum to the
-//! right wave and mean nothing apart: given other decays (`--material`) they cancel or double it. Of two modes within three
-//! half widths of the narrower one
+//! The stages each describe a resonance as it is from their beginning on, so that one whose first
+//! milliseconds are no part of its decay (the striker, the room) comes out as its mode and a few
+//! faster ones beside it, which sum to the right wave and mean nothing apart: given other decays
+//! (`--material`) they cancel or double it. Of two modes within three half widths of the narrower
+//! one
 //!
 //! | | becomes | as long as it costs, of the two's energy |
 //! |---|---|---|
@@ -12,9 +13,9 @@
 //! | both are over soon | the one mode nearest to their sum | 10 dB |
 //! | both ring on | the same, if its decay is the longer one's to a seventh | 16 dB |
 //!
-//! What falls by 2 nepers in 50 ms is over soon. Two that ring on alike are given 16 dB in the first row too: they may
-//! beat, and a doublet that does loses more. The cheapest go first, and all together may cost 1 dB of signal to error, or
-//! what leaves 20 dB of it.
+//! What falls by 2 nepers in 50 ms is over soon. Two that ring on alike are given 16 dB in the
+//! first row too: they may beat, and a doublet that does loses more. The cheapest go first, and all
+//! together may cost 1 dB of signal to error, or what leaves 20 dB of it.
 
 use crate::search::limits::Limits;
 use crate::sinusoid::partial::Partial;
@@ -29,20 +30,20 @@ const FASTER: f64 = 2.5;
 /// Over soon is what falls by so many nepers within so long, s.
 const OVER_NEPERS: f64 = 2.0;
 const OVER_S: f64 = 0.05;
-/// What one mode may cost in place of two, as a part of their energy; the same where they may beat.
+/// Cost of one mode in place of two, as a part of their energy; the same where they may beat.
 const BESIDE: f64 = 0.1;
 const BEATING: f64 = 0.025;
 /// By how much the decay of what rings on may change.
 const SAME_DECAY: f64 = 0.15;
-/// What all may cost: so many times the squared residual, or what leaves so much of the sound.
+/// Cost of all: so many times the squared residual, or what leaves so much of the sound.
 const COST: f64 = 1.26;
 const LEFT: f64 = 0.01;
 /// Most rounds, and steps of the refit after each.
 const ROUNDS: usize = 10;
 const STEPS: usize = 4;
 
-/// Makes one mode of what is one resonance in `attack`; `target` is the `segment` without its `tail`, whose modes stay as
-/// they are.
+/// Makes one mode of what is one resonance in `attack`; `target` is the `segment` without its
+/// `tail`, whose modes stay as they are.
 pub(crate) fn one_mode_each(
     segment: &[f64],
     target: &[f64],
@@ -83,8 +84,8 @@ struct Pair {
 }
 
 impl View<'_> {
-    /// The modes that are not of the tail, fewer by what `budget` allows, each in one pair at most; `None` if there is nothing
-    /// to do.
+    /// The modes that are not of the tail, fewer by what `budget` allows, each in one pair at most;
+    /// `None` if there is nothing to do.
     fn fewer(&self, budget: f64) -> Option<Vec<Partial>> {
         let mut pairs: Vec<Pair> =
             (self.tail..self.all.len()).flat_map(|b| (0..b).filter_map(move |a| self.pair([a, b]))).collect();
@@ -156,7 +157,7 @@ mod tests {
         }
     }
 
-    /// What is left of `attack` beside `tail` in their own sum and a little noise.
+    /// Remainder of `attack` beside `tail` in their own sum and a little noise.
     fn left(tail: &[Partial], attack: &[Partial]) -> Vec<Partial> {
         let mut segment = synthesise(&[tail, attack].concat(), 44_100);
         let mut rng = asperity_dsp::rng::Rng::new(3);

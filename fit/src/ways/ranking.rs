@@ -1,7 +1,8 @@
 //! Ranking of partials by loudness, for when there are more than places.
 //!
-//! Energy alone prefers the attack. A partial counts by the larger of two shares: of all energy, and of all energy after
-//! a tenth of a second, where the attack is over and what rings is heard alone.
+//! Energy alone prefers the attack. A partial counts by the larger of two shares: of all energy,
+//! and of all energy after a tenth of a second, where the attack is over and what rings is heard
+//! alone.
 
 use crate::sinusoid::amplitudes::contributions;
 use crate::sinusoid::partial::Partial;

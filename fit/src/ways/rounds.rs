@@ -1,4 +1,5 @@
-//! What every search over levels repeats: a level's proposals join what is found, and what is found becomes one mode a resonance, each proven.
+//! Rounds that every search over levels repeats: a level's proposals join what is found, and what
+//! is found becomes one mode a resonance, each proven.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::proof::pruning::prune;
@@ -11,7 +12,8 @@ use crate::sinusoid::refinement::refine;
 use crate::ways::analysis::subtract;
 use crate::ways::merging::merge_resonances;
 
-/// Adds what one level sees in `signal` beside the partials that are `found`, all amplitudes fitted anew; says whether there was anything.
+/// Adds what one level sees in `signal` beside the partials that are `found`, all amplitudes fitted
+/// anew; says whether there was anything.
 pub(super) fn add_proposed(signal: &[f64], found: &mut Vec<Partial>, level: Level, limits: &Limits) -> bool {
     let residual = subtract(signal, found);
     let noise = NoiseFloor::of_residual(&residual, limits.rate_hz, limits.least_noise);
@@ -24,7 +26,7 @@ pub(super) fn add_proposed(signal: &[f64], found: &mut Vec<Partial>, level: Leve
     true
 }
 
-/// When partials are one resonance, and when they are proven.
+/// Rules by which partials are one resonance, and are proven.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounds {
     /// At most so many.

@@ -1,30 +1,35 @@
 //! The analysis of a recording that is no sum of modes: from the tail to the attack, in stages.
 //!
-//! Fitted all at once, a recording is fitted where it is loud: modes are spent on the attack, and quiet partials that
-//! ring long are left out, although they are what is heard for most of the time. So a stage begins where the attack
-//! is long over, fits what is there, and leaves it alone; the next one begins earlier and fits what the former leave.
+//! Fitted all at once, a recording is fitted where it is loud: modes are spent on the attack, and
+//! quiet partials that ring long are left out, although they are what is heard for most of the
+//! time. So a stage begins where the attack is long over, fits what is there, and leaves it alone;
+//! the next one begins earlier and fits what the former leave.
 //!
 //! | stage | from, s | modes may fall until there by | places it may take |
 //! |---|---|---|---|
 //! | 1–3 | 0.2, 0.05, 0.012 | 1.5 nepers | 45 % of those left |
 //! | 4 | 0 | – | the rest |
 //!
-//! A mode is continued back to the onset, where the engine strikes it, and grows by at most the nepers of the table. What
-//! falls faster is fitted along with the others, up to three times as fast, so that it does not bend them; but its place is
-//! in a later stage, and it is given up before this one ends.
+//! A mode is continued back to the onset, where the engine strikes it, and grows by at most the
+//! nepers of the table. What falls faster is fitted along with the others, up to three times as
+//! fast, so that it does not bend them; but its place is in a later stage, and it is given up
+//! before this one ends.
 //!
-//! Within a stage levels from long to short propose the few strongest poles of every band, all are refitted jointly,
-//! and of more than may be kept those are kept that are heard ([`crate::ways::ranking`]). What is one resonance
-//! becomes one mode ([`crate::ways::merging`]). At the end all but the first stage's, which are the tail, are refitted
-//! together, their energy at a small cost, so that pairs do not grow against each other where nothing is an exponential,
-//! and what several stages found of one resonance becomes one mode (`one_mode`). What then still rings late and was lost
-//! on the way gets the places that are left (`late_lines`).
+//! Within a stage levels from long to short propose the few strongest poles of every band, all are
+//! refitted jointly, and of more than may be kept those are kept that are heard
+//! ([`crate::ways::ranking`]). What is one resonance becomes one mode ([`crate::ways::merging`]).
+//! At the end all but the first stage's, which are the tail, are refitted together, their energy at
+//! a small cost, so that pairs do not grow against each other where nothing is an exponential, and
+//! what several stages found of one resonance becomes one mode (`one_mode`). What then still rings
+//! late and was lost on the way gets the places that are left (`late_lines`).
 //!
-//! Giving strong partials the slope of their level down to 35 dB instead of the decay by energy was tried: decays of the 14
-//! recordings 3.5 % off for 7.2 (pooled), of 32 others as before, but 15 of 56 late partials absent for 8. So it is not done.
+//! Giving strong partials the slope of their level down to 35 dB instead of the decay by energy was
+//! tried: decays of the 14 recordings 3.5 % off for 7.2 (pooled), of 32 others as before, but 15 of
+//! 56 late partials absent for 8. So it is not done.
 //!
-//! Struck by the engine, against the former single fit of everything (14 recordings): late partials absent 7 of 56 for 19,
-//! signal to error from the onset 20 dB for 13.8 (median). By the sum of the modes themselves late lines take 8 of 56 to 6.
+//! Struck by the engine, against the former single fit of everything (14 recordings): late partials
+//! absent 7 of 56 for 19, signal to error from the onset 20 dB for 13.8 (median). By the sum of the
+//! modes themselves late lines take 8 of 56 to 6.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::search::limits::Limits;
@@ -37,11 +42,11 @@ use crate::ways::one_mode::one_mode_each;
 use crate::ways::ranking::keep_heard;
 use crate::ways::rounds::{Rounds, add_proposed};
 
-/// Where the stages begin, s after the onset.
+/// Beginnings of the stages, s after the onset.
 const STAGES_S: [f64; 4] = [0.2, 0.05, 0.012, 0.0];
 /// By how much a mode may fall from the onset until its stage begins.
 const BACK_NEPERS: f64 = 1.5;
-/// So many times as fast a mode may fall while a stage is fitted.
+/// Factor by which a mode may fall faster while a stage is fitted.
 const FASTER: f64 = 3.0;
 /// Part of the places left that a stage but the last may take.
 const PLACES: f64 = 0.45;
@@ -56,11 +61,12 @@ const LEVEL_STEPS: usize = 6;
 const LAST_STEPS: usize = 8;
 /// Most refinements of all at the end, each after second modes have gone.
 const LAST_ROUNDS: usize = 6;
-/// What one mode may miss of a resonance in a stage is 24 dB below it, so that all together miss less than 18; a mode is proven whose amplitude
-/// is as large as its standard deviation.
+/// Miss of one mode of a resonance in a stage: 24 dB below it, so that all together miss less than
+/// 18; a mode is proven whose amplitude is as large as its standard deviation.
 const ROUNDS: Rounds = Rounds { most: 6, merged_loss: 0.004, proven: 1.0, steps: 3 };
-/// A later stage adds nothing within so many half widths of a strong partial of the tail (within so much of the strongest
-/// one's energy there) unless it falls so many times as fast, as the attack does.
+/// A later stage adds nothing within so many half widths of a strong partial of the tail (within so
+/// much of the strongest one's energy there) unless it falls so many times as fast, as the attack
+/// does.
 const HALF_WIDTHS: f64 = 3.0;
 const STRONG: f64 = 0.01;
 const OF_THE_ATTACK: f64 = 4.0;
@@ -115,7 +121,7 @@ pub fn analyse_from_the_tail(segment: &[f64], limits: &Limits, progress: &mut dy
     Analysis { partials, noise, residual, capped, explained: false }
 }
 
-/// What is fitted from one place on.
+/// Fit from one place on.
 struct Stage<'a> {
     target: &'a [f64],
     start: usize,
@@ -148,12 +154,13 @@ impl<'a> Stage<'a> {
             }
         }
         self.leave_to_later_stages();
-        // What is one resonance is one mode, and none is fainter than what all leave where it sounds.
+        // What is one resonance is one mode, and none is fainter than what all leave where it
+        // sounds.
         ROUNDS.run(self.target, &mut self.found, &self.limits);
         self.leave_to_later_stages();
     }
 
-    /// What the tail has of one resonance becomes one mode: it is never looked at again.
+    /// Makes one mode of what the tail has of one resonance: it is never looked at again.
     fn one_mode_each(&mut self) {
         one_mode_each(self.target, self.target, &[], &mut self.found, &self.limits, &self.limits.bounds);
     }
@@ -178,7 +185,8 @@ impl<'a> Stage<'a> {
         self.capped |= self.keep(self.places);
     }
 
-    /// Keeps the `most` that are heard best, and none below the level limit; says whether more were there.
+    /// Keeps the `most` that are heard best, and none below the level limit; says whether more were
+    /// there.
     fn keep(&mut self, most: usize) -> bool {
         let count = self.target.len();
         let more = self.found.len() > most;
@@ -203,7 +211,7 @@ fn strong(tail: &[Partial], count: usize) -> Vec<Partial> {
     tail.iter().filter(|p| p.energy(count) > STRONG * most).copied().collect()
 }
 
-/// Whether a partial is a second mode of a resonance that the tail has.
+/// Tests whether a partial is a second mode of a resonance that the tail has.
 fn is_second(partial: &Partial, strong: &[Partial]) -> bool {
     strong.iter().any(|of| {
         let near = (partial.omega - of.omega).abs() < HALF_WIDTHS * of.delta;

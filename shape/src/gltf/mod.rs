@@ -1,6 +1,7 @@
 //! glTF 2.0: the triangles of every node of the scene, where the node places them.
 //!
-//! Read here by `serde_json`, which is there already: the crate `gltf` costs the first build an eighth of all its time.
+//! Read here by `serde_json`, which is there already: the crate `gltf` costs the first build an
+//! eighth of all its time.
 
 mod document;
 
@@ -62,7 +63,8 @@ impl Document {
         Ok(maps)
     }
 
-    /// Positions of a primitive in its node's frame, and its triangles; none where it is lines or points, or packed.
+    /// Positions of a primitive in its node's frame, and its triangles; none where it is lines or
+    /// points, or packed.
     ///
     /// # Errors
     /// When accessors do not hold what they should.
@@ -182,7 +184,8 @@ mod tests {
 
     #[test]
     fn a_quantised_mesh_stands_where_its_parents_put_it() {
-        // One triangle of normalised bytes, halved by a matrix, turned a quarter around z, and moved by its parent.
+        // One triangle of normalised bytes, halved by a matrix, turned a quarter around z, and
+        // moved by its parent.
         let bytes: [i8; 12] = [0, 0, 0, 0, 127, 0, 0, 0, 0, 127, 0, 0];
         let data = base64::engine::general_purpose::STANDARD.encode(bytes.map(|b| b as u8));
         let text = format!(

@@ -7,7 +7,8 @@ use asperity_shape::surface_mesh::SurfaceMesh;
 use asperity_shape::vector::Vec3;
 use asperity_shape::volume_mesh::VolumeMesh;
 
-/// A block from 0 to `sides`, `cells` cells along each, every cell cut into six tetrahedra around its diagonal.
+/// A block from 0 to `sides`, `cells` cells along each, every cell cut into six tetrahedra around
+/// its diagonal.
 pub fn block(sides: Vec3, cells: [usize; 3]) -> VolumeMesh {
     let [nx, ny, nz] = cells;
     let index = |i: usize, j: usize, k: usize| (i + (nx + 1) * (j + (ny + 1) * k)) as u32;
@@ -70,8 +71,8 @@ pub fn ball(radius_m: f64, cells: usize) -> VolumeMesh {
     })
 }
 
-/// A body of revolution: `profile(along, across)` gives radius and height for 0–1 along the wall and 0–1 across it; a radius
-/// of 0 is the axis.
+/// A body of revolution: `profile(along, across)` gives radius and height for 0–1 along the wall
+/// and 0–1 across it; a radius of 0 is the axis.
 pub fn lathe(cells: [usize; 3], profile: impl Fn(f64, f64) -> (f64, f64)) -> VolumeMesh {
     let [around, along, across] = cells;
     let grid = block([1.0; 3], cells);

@@ -8,7 +8,8 @@ use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use asperity_dsp::trajectory::Trajectory;
 
-/// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives it.
+/// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives
+/// it.
 #[derive(Clone, Copy)]
 pub(super) struct SilentContact {
     pub(super) contact: ContactId,
@@ -67,9 +68,9 @@ impl Renderer {
         ContactSample { normal_force_n, ..*sample }
     }
 
-    /// A landing right after a lift-off of the same contact at the same place is the physics engine's
-    /// flicker, not the finger's: while the contact still fades it goes on as if it had never ended,
-    /// its closing speed unheard. Whether it was so.
+    /// A landing right after a lift-off of the same contact at the same place is the physics
+    /// engine's flicker, not the finger's: while the contact still fades it goes on as if it had
+    /// never ended, its closing speed unheard. Whether it was so.
     fn resume(
         &mut self,
         contact: ContactId,
@@ -103,7 +104,8 @@ impl Renderer {
         true
     }
 
-    /// A contact lands. One that neither presses nor falls is not there yet: its first force begins it.
+    /// A contact lands. One that neither presses nor falls is not there yet: its first force begins
+    /// it.
     fn land(&mut self, contact: ContactId, surface: usize, role: Role, sample: &ContactSample, stamp: Stamp) {
         let silent = SilentContact { contact, surface, role, stolen: false };
         if sample.normal_force_n > EMPTY_FORCE_N || sample.closing_m_s > 0.0 {
@@ -191,8 +193,8 @@ impl Renderer {
         self.begin(contact, silent.surface, silent.role, &landed, stamp);
     }
 
-    /// A contact that is suddenly elsewhere fades where it was and rises where it is, each over the relief of
-    /// its own place: a profile that steps from one to the other would strike the pad.
+    /// A contact that is suddenly elsewhere fades where it was and rises where it is, each over the
+    /// relief of its own place: a profile that steps from one to the other would strike the pad.
     fn jump(&mut self, index: usize, sample: &ContactSample, path: &Trajectory, stamp: Stamp) {
         Counters::add(&self.counters.jumps, 1);
         let voice = &mut self.voices[index];
@@ -213,7 +215,7 @@ impl Renderer {
         }
     }
 
-    /// Whether there was such a contact.
+    /// Tests whether there was such a contact.
     fn end(&mut self, contact: ContactId) -> bool {
         let known_silent = self.silent.iter().position(|silent| silent.contact == contact);
         if let Some(index) = known_silent {
@@ -231,7 +233,8 @@ impl Renderer {
         self.voices_used.iter().filter(|&voice| self.voices[voice].phase == Phase::Sounding).count()
     }
 
-    /// A voice for a new contact: a free one, after stealing the least important when all are taken.
+    /// A voice for a new contact: a free one, after stealing the least important when all are
+    /// taken.
     fn take_voice(&mut self) -> usize {
         if self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.stolen, 1);

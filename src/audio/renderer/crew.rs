@@ -1,19 +1,22 @@
 //! Contacts and bodies on several threads ([`Config::threads`](field@crate::Config::threads)).
 //!
-//! *What goes together.* A surface and all contacts on it are one job, because a surface may remember who touched it, and in which order: its
-//! contacts are rendered one after the other as on one thread. A body that rings is a job of its own. Jobs own what they work on (boxes change
-//! hands, nothing is copied), the dearest go out first, and every sum is made on the audio thread in the order of voices and bodies: the
-//! bits are those of one thread, whoever ran what.
+//! *What goes together.* A surface and all contacts on it are one job, because a surface may
+//! remember who touched it, and in which order: its contacts are rendered one after the other as on
+//! one thread. A body that rings is a job of its own. Jobs own what they work on (boxes change
+//! hands, nothing is copied), the dearest go out first, and every sum is made on the audio thread
+//! in the order of voices and bodies: the bits are those of one thread, whoever ran what.
 //!
-//! *No waiting between the two.* The audio thread takes contacts as they come home, in their order, and sends a body out as soon as the last
-//! contact that touches it has been added up: others ring while it adds up the rest and drives the actuators.
+//! *No waiting between the two.* The audio thread takes contacts as they come home, in their order,
+//! and sends a body out as soon as the last contact that touches it has been added up: others ring
+//! while it adds up the rest and drives the actuators.
 //!
 //! ```text
 //! audio thread   surfaces → …a surface… │ contacts 1, 2, 3 … in order → bodies │ actuators │ …a body… │ bodies in order → buses
 //! helpers                 …surfaces…                       …surfaces, bodies…
 //! ```
 //!
-//! *When.* Only where there are at least two jobs, and work enough that handing it over (about 1 µs) pays.
+//! *When.* Only where there are at least two jobs, and work enough that handing it over (about 1
+//! µs) pays.
 #![allow(clippy::vec_box, reason = "boxes change hands, what is in them does not move")]
 
 use super::outputs::HapticChannel;
@@ -110,12 +113,13 @@ pub(super) struct Crew {
     surfaces: Vec<Box<SurfaceShare>>,
     voices: Vec<Box<VoiceShare>>,
     bodies: Vec<Box<BodyShare>>,
-    /// Contacts that are away, or have been and are not asked for yet, by voice; and those of them that are back.
+    /// Contacts that are away, or have been and are not asked for yet, by voice; and those of them
+    /// that are back.
     away: Box<[bool]>,
     rendered: Box<[Option<Box<VoiceShare>>]>,
     /// One more than the last voice that touches a body in this stretch, by body; 0 for none.
     last_to_touch: Box<[usize]>,
-    /// Whether bodies go out in this stretch as soon as nobody touches them any more.
+    /// True where bodies go out in this stretch as soon as nobody touches them any more.
     sends_bodies: bool,
     /// Bodies that were rung, in their order.
     rung: Vec<Box<BodyShare>>,
@@ -178,7 +182,8 @@ impl Crew {
         })
     }
 
-    /// Sends the contacts of a stretch out, if sharing them pays, and whether it did; what they do waits for [`take_voice`](Self::take_voice).
+    /// Sends the contacts of a stretch out, if sharing them pays, and whether it did; what they do
+    /// waits for [`take_voice`](Self::take_voice).
     pub(super) fn send_contacts(
         &mut self,
         at: At,
@@ -226,7 +231,7 @@ impl Crew {
         true
     }
 
-    /// What a contact did in this stretch, if it was shared, as soon as it is back.
+    /// Result of a contact in this stretch, if it was shared, as soon as it is back.
     pub(super) fn take_voice(
         &mut self,
         index: usize,
@@ -260,8 +265,8 @@ impl Crew {
         self.voices.push(share);
     }
 
-    /// While contacts are away: sends out the bodies that nobody touches, if sharing bodies pays; the others go as they
-    /// [are left](Self::leave_bodies).
+    /// While contacts are away: sends out the bodies that nobody touches, if sharing bodies pays;
+    /// the others go as they [are left](Self::leave_bodies).
     pub(super) fn send_bodies(&mut self, terms: Terms, n: usize, bodies: &mut [BodySeat], used: &Occupied) {
         self.sends_bodies = bodies_pay(terms, n, bodies, used);
         for index in used.iter() {
@@ -271,7 +276,7 @@ impl Crew {
         }
     }
 
-    /// What a contact did has been added up: bodies that it touched last go out.
+    /// Notes that a contact's result has been added up: bodies that it touched last go out.
     pub(super) fn leave_bodies(
         &mut self,
         voice: usize,
@@ -301,7 +306,8 @@ impl Crew {
         self.send_all();
     }
 
-    /// Rings the bodies of a stretch, if sharing them pays; what they sound like waits for [`take_body`](Self::take_body).
+    /// Rings the bodies of a stretch, if sharing them pays; what they sound like waits for
+    /// [`take_body`](Self::take_body).
     pub(super) fn ring_bodies(
         &mut self,
         terms: Terms,
@@ -338,8 +344,8 @@ impl Crew {
         }
     }
 
-    /// What a body sounded like in this stretch but for the first samples of its strikes, and how many groups heard nothing, if it was
-    /// shared. Bodies are asked for in their order.
+    /// Sound of a body in this stretch but for the first samples of its strikes, and the number of
+    /// groups that were not driven, if it was shared. Bodies are asked for in their order.
     pub(super) fn take_body(&mut self, index: usize) -> Option<(&[f32], usize)> {
         let share = self.rung.get(self.next_rung).filter(|share| share.index == index)?;
         self.next_rung += 1;
@@ -358,16 +364,17 @@ fn touched(voice: &Voice, seat: &Seat) -> impl Iterator<Item = usize> + use<> {
     under.into_iter().chain(voice.role.holder).map(|body| body.index())
 }
 
-/// Whether at least two bodies ring, and are work enough.
+/// Tests whether at least two bodies ring, and are work enough.
 fn bodies_pay(terms: Terms, n: usize, bodies: &[BodySeat], used: &Occupied) -> bool {
     let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
     let (ringing, modes) =
         costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
-    // Where modes are left out a body sounds twice, by those that hear and those that do not: its sums are made in its own order.
+    // Where modes are left out a body sounds twice, by those that hear and those that do not: its
+    // sums are made in its own order.
     ringing >= 2 && modes * n >= LEAST_MODE_SAMPLES && terms.mode_level == 0
 }
 
-/// Whether contacts lie on at least two surfaces, and are work enough.
+/// Tests whether contacts lie on at least two surfaces, and are work enough.
 fn pays(at: At, voices: &[Box<Voice>], used: &Occupied) -> bool {
     let mut awake = used.iter().map(|index| &voices[index]).filter(|voice| voice.works());
     let Some(first) = awake.next() else { return false };

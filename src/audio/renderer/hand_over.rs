@@ -1,4 +1,5 @@
-//! Hand-over between two renderers of one scene, on the game thread: what the old one holds that cannot be made again.
+//! Hand-over between two renderers of one scene, on the game thread: what the old one holds that
+//! cannot be made again.
 
 use super::Renderer;
 use super::contacts::SilentContact;
@@ -11,7 +12,7 @@ use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::actuator::ChannelControl;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// What one renderer leaves to the next.
+/// Parts that one renderer leaves to the next.
 pub(crate) struct HandedOver {
     pub(crate) surfaces: Vec<(SurfaceId, Box<SurfaceSlot>)>,
     /// Contacts that touch: they come back with their next move.

@@ -1,4 +1,4 @@
-//! What the game half sends, applied at its sample.
+//! Messages of the game half, applied at their samples.
 
 use super::Renderer;
 use crate::audio::seat::Change;
@@ -15,7 +15,8 @@ use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Renderer {
-    /// How many samples can be rendered before the next event, the grid or the end of the block.
+    /// Number of samples that can be rendered before the next event, the grid or the end of the
+    /// block.
     pub(super) fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let to_event = match self.from_game.peek() {
@@ -36,7 +37,8 @@ impl Renderer {
                     ended || in_order(&self.counters, *stamp).sample() <= self.position
                 }
                 Message::Reset => true,
-                // Each of these may send something home; it waits until there is room, and there is unless the game collects nothing.
+                // Each of these may send something home; it waits until there is room, and there is
+                // unless the game collects nothing.
                 _ => self.to_game.free() > 0,
             };
             if !due {
@@ -139,7 +141,7 @@ impl Renderer {
         Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
     }
 
-    /// When something begins that holds at `stamp`: what is late begins at once.
+    /// Beginning of what holds at `stamp`: what is late begins at once.
     pub(super) fn due(&self, stamp: Stamp) -> Stamp {
         stamp.max(Stamp::whole(self.position))
     }
@@ -171,7 +173,8 @@ impl Renderer {
     }
 }
 
-/// When something stamped so is due: where game time was tied anew, not after what was reported since.
+/// Time at which something stamped so is due: where game time was tied anew, not after what was
+/// reported since.
 fn in_order(counters: &Counters, stamp: Stamp) -> Stamp {
     stamp.min(Stamp::from_bits(counters.newest_bits.load(Relaxed)))
 }

@@ -5,13 +5,13 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// A peak meter: up at once, down slowly.
 pub(super) struct Meter {
     peak: f32,
-    /// Of the present [`MAX_BLOCK`] samples.
+    /// Peak of the present [`MAX_BLOCK`] samples.
     now: f32,
-    /// What is left of the peak after [`MAX_BLOCK`] samples.
+    /// Share that is left of the peak after [`MAX_BLOCK`] samples.
     fall: f32,
 }
 
-/// How long a meter takes to fall by 20 dB, s.
+/// Time in which a meter falls by 20 dB, s.
 const METER_FALL_S: f64 = 0.5;
 
 impl Meter {
@@ -20,7 +20,7 @@ impl Meter {
         Self { peak: 0.0, now: 0.0, fall }
     }
 
-    /// How loud it was, linear.
+    /// Level, linear.
     pub(super) fn peak(&self) -> f32 {
         self.peak
     }

@@ -19,7 +19,7 @@ use asperity_dsp::limits::output as limits;
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Where limiters hold the peaks: full scale.
+/// Ceiling of the limiters: full scale.
 const CEILING: f64 = 1.0;
 
 /// An actuator: what its contacts add up to, and the stage that drives it.
@@ -28,10 +28,11 @@ pub(super) struct HapticChannel {
     design: actuator::Channel,
     pub(super) control: ChannelControl,
     state: ChannelState,
-    /// The same filter twice: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
+    /// Twice one filter: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
     low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
-    /// Sum of the contacts, m or m/s²; what is there of the stretch before where nobody has added to it yet.
+    /// Sum of the contacts, m or m/s²; what is there of the stretch before where nobody has added
+    /// to it yet.
     sum: [f64; MAX_BLOCK],
     added: bool,
 }
@@ -45,9 +46,9 @@ pub(super) struct Bus {
     meter: Meter,
     /// Sum of the bodies.
     sum: [f32; MAX_BLOCK],
-    /// How many of its first samples may not be zero.
+    /// Number of its first samples that may not be zero.
     added: usize,
-    /// What is left of bodies that were cut.
+    /// Rest of bodies that were cut.
     endings: ImpulseRing<f32>,
 }
 
@@ -93,7 +94,7 @@ impl HapticChannel {
         (&mut self.sum[..n], &self.output)
     }
 
-    /// Whether means of inner samples leave, and not some of them.
+    /// True where means of inner samples leave, and not some of them.
     fn averages(&self, inner: InnerRate) -> bool {
         inner.every > 1 && self.output.quantity() == Quantity::Acceleration
     }
@@ -133,7 +134,7 @@ impl Bus {
         self.gain = gain;
     }
 
-    /// Nobody has played on it in the stretch of `n` samples that begins, but for what was cut.
+    /// Empties it for the stretch of `n` samples that begins, but for what was cut.
     fn begin(&mut self, position: u64, n: usize) {
         let added = std::mem::take(&mut self.added);
         if added > 0 {
@@ -160,7 +161,7 @@ impl Bus {
         &mut self.sum[..n]
     }
 
-    /// What leaves of the present stretch, as long as `out`.
+    /// Samples of the present stretch that leave, as long as `out`.
     fn finish(&mut self, master: Option<&[f32]>, out: &mut [f32]) {
         if self.added == 0 && self.limiter.is_none() && self.smoothed.settled_at(self.gain) {
             return out.fill(0.0);
@@ -184,7 +185,8 @@ impl Bus {
 }
 
 impl Renderer {
-    /// Silence where nothing is written later: beyond the block's end, in outputs that nobody plays on, and where means are added up.
+    /// Silence where nothing is written later: beyond the block's end, in outputs that nobody plays
+    /// on, and where means are added up.
     pub(super) fn clear_what_nobody_writes(
         &self,
         frames: usize,
@@ -206,7 +208,8 @@ impl Renderer {
         }
     }
 
-    /// By how much the peak limiters of channels and buses have turned down at most, dB; 0 for not at all.
+    /// By how much the peak limiters of channels and buses have turned down at most, dB; 0 for not
+    /// at all.
     #[must_use]
     pub fn limiter_db(&self) -> f64 {
         let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
@@ -242,7 +245,7 @@ impl Renderer {
         }
     }
 
-    /// The same of what the bodies sound like, bus by bus.
+    /// Writes the sound of the bodies, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         self.buses.iter_mut().for_each(|bus| bus.begin(self.position, n));
         let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
@@ -286,7 +289,8 @@ impl Renderer {
     }
 }
 
-/// Renders a body that sounds on several buses, goes from one to another, or to another gain, or to rest.
+/// Renders a body that sounds on several buses, goes from one to another, or to another gain, or to
+/// rest.
 #[cold]
 #[inline(never)]
 fn render_moving(
@@ -327,7 +331,8 @@ fn clear_beyond(outputs: &mut [&mut [f32]], written: impl Fn(usize) -> usize) {
     }
 }
 
-/// Where `n` inner samples go of which the first has place `at` in the output: into it, where all of them leave.
+/// Place of `n` inner samples of which the first has place `at` in the output: into it, where all
+/// of them leave.
 fn place<'a>(
     inner: InnerRate,
     (at, n): (usize, usize),

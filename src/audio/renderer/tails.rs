@@ -1,7 +1,8 @@
 //! Tails: bodies that were removed or replaced ring out until they sleep.
 //!
-//! Each rings at a place behind those that the game names, as it rang at its own: same gain, same bus. So many ring at a time; beyond that the
-//! quietest is damped, and where even those that are damped find no place, the quietest of them ends within one or two blocks.
+//! Each rings at a place behind those that the game names, as it rang at its own: same gain, same
+//! bus. So many ring at a time; beyond that the quietest is damped, and where even those that are
+//! damped find no place, the quietest of them ends within one or two blocks.
 //!
 //! ```text
 //! places of the game │ RINGING + FADING places: ring out → (too many) damped → home

@@ -1,4 +1,5 @@
-//! The contacts of a stretch: each voice is rendered, then what it does is added up in the order of the voices.
+//! The contacts of a stretch: each voice is rendered, then what it does is added up in the order of
+//! the voices.
 
 use super::Renderer;
 use super::crew::Crew;
@@ -17,7 +18,7 @@ use crate::prepared::spot::Spot;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 
-/// Where the voices' outputs go, and what was counted.
+/// Destination of the voices' outputs, and the counts.
 struct Gathering<'a> {
     at: At,
     channels: &'a mut [HapticChannel],
@@ -71,7 +72,8 @@ impl Gathering<'_> {
         }
     }
 
-    /// Adds what a crew has rendered. By itself, as what follows: what one contact alone does not need costs it nothing.
+    /// Adds what a crew has rendered. By itself, as what follows: what one contact alone does not
+    /// need costs it nothing.
     #[inline(never)]
     fn gather(
         &mut self,
@@ -153,12 +155,12 @@ impl Renderer {
     }
 }
 
-/// What the contact's actuator plays.
+/// Output of the contact's actuator.
 fn output<'a>(voice: &Voice, channels: &'a [HapticChannel], shared: &'a Shared) -> &'a ContactOutput {
     voice.role.actuator.map_or(&shared.idle_output, |channel| &channels[channel].output)
 }
 
-/// Where a contact rubs, and along what of the body.
+/// Place at which a contact rubs, and the direction along the body.
 fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> Spot {
     let place = place.zip(surface.frame).map(|(place, frame)| {
         let [along_u, along_v] = frame.axes();

@@ -5,9 +5,9 @@ use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth::{self, Butterworth, Two};
 use asperity_dsp::pair::Pair;
 
-/// What rounding leaves of a pad that does not move, m or m/s².
+/// Rounding error of a pad that does not move, m or m/s².
 const ROUNDING: f64 = 1e-13;
-/// What rounding leaves of a force that does not change, N.
+/// Rounding error of a force that does not change, N.
 const ROUNDING_N: f64 = 1e-11;
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
@@ -18,11 +18,11 @@ const STILL_M_S2: f64 = 1e-6;
 pub(super) struct AcCoupling {
     pub(super) feel: ContactOutputState,
     pub(super) force: butterworth::State,
-    /// What was felt last.
+    /// Last haptic value.
     last_felt: f64,
 }
 
-/// What the force is to become.
+/// Coupling of the force.
 #[derive(Clone, Copy)]
 pub(super) struct ForceCoupling<'a> {
     pub(super) high_pass: &'a Butterworth,
@@ -31,14 +31,15 @@ pub(super) struct ForceCoupling<'a> {
 }
 
 impl AcCoupling {
-    /// Nobody's.
+    /// State of an unused voice.
     pub(super) fn idle(output: &ContactOutput) -> Self {
         let feel = ContactOutputState::begin(output, 0.0, 0.0);
         Self { feel, force: butterworth::State::default(), last_felt: 0.0 }
     }
 
-    /// The two high-passes side by side, because each waits for itself most of the time: the pad's displacement or acceleration about
-    /// the mean surface, which the actuator is to reproduce, and the alternating contact force, which sounds, as impulses of N·s.
+    /// The two high-passes side by side, because each waits for itself most of the time: the pad's
+    /// displacement or acceleration about the mean surface, which the actuator is to reproduce, and
+    /// the alternating contact force, which sounds, as impulses of N·s.
     pub(super) fn run(
         &mut self,
         output: &ContactOutput,
@@ -68,7 +69,8 @@ impl AcCoupling {
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
-    /// Two samples at a time, so that the next stage finds whole vectors in memory and waits for none.
+    /// Two samples at a time, so that the next stage finds whole vectors in memory and waits for
+    /// none.
     fn run_both(
         &mut self,
         output: &ContactOutput,
@@ -102,17 +104,18 @@ impl AcCoupling {
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
-    /// What a resting contact is felt as.
+    /// Haptic output of a resting contact.
     pub(super) fn rest(&self, felt: &mut [f64]) {
         felt.fill(self.last_felt);
     }
 
-    /// Whether nothing of a pad at `pad_m` is felt to move. Without a high-pass a resting pad is felt as its constant displacement.
+    /// Tests whether nothing of a pad at `pad_m` is felt to move. Without a high-pass a resting pad
+    /// is felt as its constant displacement.
     pub(super) fn feels_still(&self, output: &ContactOutput, pad_m: f64) -> bool {
         self.last_felt.abs() < still(output) || (self.last_felt - pad_m).abs() < still(output)
     }
 
-    /// What is left of a contact that has come to rest.
+    /// Remainder of a contact that has come to rest.
     pub(super) fn settle(&mut self, output: &ContactOutput) {
         if self.last_felt.abs() < still(output) {
             self.last_felt = 0.0;

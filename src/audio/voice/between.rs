@@ -1,15 +1,18 @@
-//! Between samples: relief that passes within a few of them is looked at there as well, where the contact would miss it.
+//! Between samples: relief that passes within a few of them is looked at there as well, where the
+//! contact would miss it.
 //!
 //! ```text
 //! e > 0.02 F/k: midway        e > 0.12 F/k: at the quarters too
 //! ```
-//! e: rms of the relief beside the cubics through its samples; F/k: how deep the pad is pressed in. A pad pressed in deeper follows the
-//! cubic as well as it would follow the ground: 0.1 of F/k on a stroke that leaves the ground at every crest is heard at −33 dB, 0.03 at
-//! −40, 0.01 at −50 dB. Known midway a twenty-fifth of e is left, which lightly pressed pads that hop make up to −20 dB of; known at the
-//! quarters, a three-hundredth. Only octaves are looked at without which more than 0.001 F/k would be missed. A stroke of 0.05 m/s under
-//! 0.8 N pays on no roughness up to 0.8. Decided where a contact begins and at the steps of the absolute sample grid, so that it depends
-//! on no split into blocks; only for the scheme that knows events. What is looked at is kept for a while about a limit: to begin anew costs
-//! three samples of cubic.
+//! e: rms of the relief beside the cubics through its samples; F/k: how deep the pad is pressed in.
+//! A pad pressed in deeper follows the cubic as well as it would follow the ground: 0.1 of F/k on a
+//! stroke that leaves the ground at every crest is heard at −33 dB, 0.03 at −40, 0.01 at −50 dB.
+//! Known midway a twenty-fifth of e is left, which lightly pressed pads that hop make up to −20 dB
+//! of; known at the quarters, a three-hundredth. Only octaves are looked at without which more than
+//! 0.001 F/k would be missed. A stroke of 0.05 m/s under 0.8 N pays on no roughness up to 0.8.
+//! Decided where a contact begins and at the steps of the absolute sample grid, so that it depends
+//! on no split into blocks; only for the scheme that knows events. What is looked at is kept for a
+//! while about a limit: to begin anew costs three samples of cubic.
 
 use super::profile::{FromThere, Seen};
 use super::shared::Shared;
@@ -24,10 +27,10 @@ const MIDWAY: f64 = 0.02;
 const QUARTERS: f64 = 0.12;
 /// So far below a limit what is looked at is kept.
 const KEPT: f64 = 0.8;
-/// What may be missed for good, of F/k.
+/// Largest error that may stay, of F/k.
 const LEFT: f64 = 0.001;
 
-/// How closely the ground between two samples is looked at.
+/// Fineness of the look at the ground between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Closeness {
     #[default]
@@ -47,18 +50,18 @@ impl Closeness {
     }
 }
 
-/// What one contact knows of the ground between its samples.
+/// Ground of one contact between its samples.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Between {
     looks: Closeness,
     /// The coarsest octave that is looked at.
     octave: usize,
-    /// Of the ground under its last sample.
+    /// Roughness of the ground under its last sample.
     roughness: f64,
     bends: Bends,
 }
 
-/// What a contact is at a step of the grid.
+/// State of a contact at a step of the grid.
 pub(super) struct Pressed<'a> {
     pub(super) shared: &'a Shared,
     pub(super) at: &'a PathPoint,
@@ -70,14 +73,14 @@ pub(super) struct Pressed<'a> {
 }
 
 impl Default for Between {
-    /// Nobody's; the first ground is as rough as any.
+    /// State of an unused voice; the first ground is as rough as any.
     fn default() -> Self {
         Self { looks: Closeness::AtSamples, octave: OCTAVES, roughness: 1.0, bends: Bends::default() }
     }
 }
 
 impl Between {
-    /// What is looked at until the next step of the grid.
+    /// Look until the next step of the grid.
     pub(super) fn decide(&mut self, by: &Pressed<'_>, seat: &mut Seat) {
         let (looks, octave) = self.needed(by, seat);
         // One octave more than needed is not worth a beginning.
@@ -111,7 +114,7 @@ impl Between {
         }
     }
 
-    /// What has to be looked at on the way from a place; none where nothing has.
+    /// Look on the way from a place; none where nothing has to be looked at.
     pub(super) fn on_the_way(&self, from_m: [f64; 2]) -> Option<FromThere> {
         let quarters = match self.looks {
             Closeness::AtSamples => return None,
@@ -121,7 +124,8 @@ impl Between {
         Some(FromThere { octave: self.octave, quarters, from_m })
     }
 
-    /// Takes what was seen in so many samples; what the profile does beside the cubics through them ([`Closeness::ground`]).
+    /// Takes what was seen in so many samples; what the profile does beside the cubics through them
+    /// ([`Closeness::ground`]).
     pub(super) fn bend(
         &mut self,
         shared: &Shared,
@@ -146,7 +150,7 @@ impl Between {
         self.looks
     }
 
-    /// How rough its last sample was.
+    /// Stores the roughness of its last sample.
     pub(super) fn remember(&mut self, roughness: f64) {
         self.roughness = roughness;
     }

@@ -1,17 +1,17 @@
-//! What a voice hands on: what is felt of it, what it sends to the body, what was counted.
+//! Outputs of a voice: what is felt of it, what it sends to the body, what was counted.
 
 use super::rub_block::RubBlock;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// What one voice adds to a stretch of samples.
+/// Outputs of one voice in a stretch of samples.
 pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
     /// Sent to the body, N·s.
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
-    /// What friction rubs the body with.
+    /// Rubbing of the body by friction.
     pub(crate) rub: RubBlock,
-    /// Whether `impulse_n_s` is more than zeros.
+    /// True where `impulse_n_s` is more than zeros.
     pub(crate) excites: bool,
     pub(crate) collisions: u64,
     /// Contact forces beyond thirty times what pressed.

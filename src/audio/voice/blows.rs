@@ -1,6 +1,8 @@
-//! Blows: a probe that is heavy or stiff leaves the ground at its crests and comes down with v √(k m), whatever presses it.
+//! Blows: a probe that is heavy or stiff leaves the ground at its crests and comes down with v √(k
+//! m), whatever presses it.
 //!
-//! They are rendered as physics has them, and counted, because who reports a light touch does not expect them.
+//! They are rendered as physics has them, and counted, because who reports a light touch does not
+//! expect them.
 
 use super::PadSample;
 
@@ -12,12 +14,12 @@ const LIGHTEST_N: f64 = 0.01;
 /// The blows of one contact.
 #[derive(Default)]
 pub(super) struct Blows {
-    /// Whether one was under way at the last row.
+    /// True where one was under way at the last row.
     strikes: bool,
 }
 
 impl Blows {
-    /// How many begin in these rows.
+    /// Number of blows that begin in these rows.
     pub(super) fn count(&mut self, rows: &[PadSample]) -> u64 {
         let mut begun = 0;
         for row in rows {

@@ -1,4 +1,5 @@
-//! Body path: the way of a contact through the space of a body that is no plane, a sphere cut from a block of stone for instance.
+//! Body path: the way of a contact through the space of a body that is no plane, a sphere cut from
+//! a block of stone for instance.
 //!
 //! The three coordinates go through the same filter as the path on the surface, two by two.
 
@@ -7,7 +8,7 @@ use crate::model::stamp::Stamp;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Where a contact is in its body.
+/// Place of a contact in its body.
 pub(super) struct BodyPath {
     /// x with y, and z.
     parts: [Trajectory; 2],

@@ -1,14 +1,15 @@
 //! Drag: friction drags the skin sideways (`dsp::tangential`), for actuators that play that.
 //!
-//! Rows and slopes in, rows out whose pad is where the skin has been dragged to along the motion. The skin is as stiff as the reported force
-//! makes it, at the steps of the absolute sample grid.
+//! Rows and slopes in, rows out whose pad is where the skin has been dragged to along the motion.
+//! The skin is as stiff as the reported force makes it, at the steps of the absolute sample grid.
 
 use super::PadSample;
 use asperity_dsp::tangential::{MASS_KG, Tangential, TangentialState, friction_force_n};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
 
-/// Below this speed friction no longer jumps with the direction, m/s: a resting finger is not dragged.
+/// Below this speed friction no longer jumps with the direction, m/s: a resting finger is not
+/// dragged.
 const SETTLING_M_S: f64 = 1e-3;
 
 /// The dragged skin of one contact.
@@ -22,7 +23,7 @@ pub(super) struct Drag {
 }
 
 impl Drag {
-    /// Nobody's.
+    /// State of an unused voice.
     pub(super) fn idle(sample_rate_hz: f64) -> Self {
         Self {
             design: Tangential::new(MASS_KG, 1.0, sample_rate_hz).ok(),

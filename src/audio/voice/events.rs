@@ -20,18 +20,19 @@ use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, Tou
 /// A force that is no touch, N.
 pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 
-/// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
+/// Span that a contact that appears is taken to have slid, s: the memory of a 10 Hz high-pass.
 const TREND_S: f64 = 0.025;
 
-/// How long before it appears the pad leaves its straight line for the ground, s. The same at every rate, because a finger remembers for
-/// tenths of a second how it began.
+/// Time before it appears at which the pad leaves its straight line for the ground, s. The same at
+/// every rate, because a finger remembers for tenths of a second how it began.
 const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
 /// Heights about the place where it does.
 const ABOUT: usize = 3;
 
 impl Voice {
-    /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed. `at` begins at the stamp.
+    /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
+    /// `at` begins at the stamp.
     pub(crate) fn begin(
         &mut self,
         contact: ContactId,
@@ -89,8 +90,8 @@ impl Voice {
         self.exciters.begin(contact.0 ^ position.rotate_left(32), position, loudness);
     }
 
-    /// A finger that is suddenly there has been sliding already: the pad is led along the straight line
-    /// to where it appears, so that it moves with the surface from its first sample.
+    /// A finger that is suddenly there has been sliding already: the pad is led along the straight
+    /// line to where it appears, so that it moves with the surface from its first sample.
     fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
@@ -98,7 +99,8 @@ impl Voice {
         self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
-        // It leaves the line where the ground is known about it: a step before, there, and a step later.
+        // It leaves the line where the ground is known about it: a step before, there, and a step
+        // later.
         self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
         let Profile { surface, rough, .. } = &mut scratch.profile;
         self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
@@ -128,7 +130,8 @@ impl Voice {
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 
-    /// The profile under `count` points behind the contact, a step of `step_s` apart, of which the first is `steps` behind.
+    /// The profile under `count` points behind the contact, a step of `step_s` apart, of which the
+    /// first is `steps` behind.
     fn lay_behind(
         &mut self,
         steps: usize,
@@ -148,7 +151,8 @@ impl Voice {
         profile.run(seat, along, points, &mut self.cells);
     }
 
-    /// Decides what of the ground is looked at between samples: when it begins, and at the steps of the absolute sample grid.
+    /// Decides what of the ground is looked at between samples: when it begins, and at the steps of
+    /// the absolute sample grid.
     pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
         let probe = shared.probe(self.role.probe);
         let plain = !self.path.is_in_body() && !self.rolling.rolls();
@@ -156,7 +160,8 @@ impl Voice {
         self.between.decide(&Pressed { shared, at, probe, contact, plain }, seat);
     }
 
-    /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.
+    /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`]: the parabola nearest
+    /// to it.
     fn trend(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
         let step_s = TREND_S / MAX_BLOCK as f64;
         self.lay_behind(MAX_BLOCK, step_s, MAX_BLOCK, at, seat, scratch);
@@ -173,8 +178,8 @@ impl Voice {
         Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, between: None }
     }
 
-    /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it
-    /// returns the path that begins where the contact now is, for another voice.
+    /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing
+    /// here: it returns the path that begins where the contact now is, for another voice.
     ///
     /// `stamp` is when the event holds, which may lie before `position` when it arrives late:
     /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
@@ -190,13 +195,14 @@ impl Voice {
         self.path.moved(sample, slot, stamp)
     }
 
-    /// Whether a landing is so close to where this contact fades that it is the same touch, and no jump.
+    /// Tests whether a landing is so close to where this contact fades that it is the same touch,
+    /// and no jump.
     pub(crate) fn goes_on_at(&self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> bool {
         self.path.is_near(sample, slot) && !self.path.would_jump(sample, slot, stamp)
     }
 
-    /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls after a
-    /// lift-off, and the pad it sets free would be felt as a thump louder than the stroke.
+    /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls
+    /// after a lift-off, and the pad it sets free would be felt as a thump louder than the stroke.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
             self.path.hold_force();
@@ -223,9 +229,10 @@ impl Voice {
         self.path.succeed(path);
     }
 
-    /// The force to render for a report, or none if the contact has left the surface. Solvers report a step
-    /// without force now and then, and some every other step, from a finger that never left: one such report
-    /// holds the force before it, because a finger thrown off for a sixtieth of a second is felt as a blow.
+    /// The force to render for a report, or none if the contact has left the surface. Solvers
+    /// report a step without force now and then, and some every other step, from a finger that
+    /// never left: one such report holds the force before it, because a finger thrown off for a
+    /// sixtieth of a second is felt as a blow.
     pub(crate) fn pressed_n(&mut self, reported_n: f64) -> Option<f64> {
         if reported_n > EMPTY_FORCE_N {
             self.empty_reports = 0;

@@ -1,11 +1,13 @@
-//! Excitation of the touched body: what a contact sends it, by exciters of which a surface names those that sound (Hasti §III-D).
+//! Excitation of the touched body: what a contact sends it, by exciters of which a surface names
+//! those that sound (Hasti §III-D).
 //!
 //! ```text
 //! collisions, grains → Hertz pulses → ring → high-pass ┐
 //! alternating contact force ──────────────────────────┴ × loudness → impulses, N·s, spread for the bank
 //! friction ── speed and force along the motion → the body's own step
 //! ```
-//! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
+//! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends
+//! on no split into blocks.
 
 mod collisions;
 mod force;
@@ -30,12 +32,13 @@ use friction::Rubbing;
 use grains::Grains;
 use pulses::Pulses;
 
-/// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
+/// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms,
+/// against jelly 20.
 const LONGEST_COLLISION_S: f64 = 0.04;
 /// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
 const STILL_N_S: f64 = 1e-12;
 
-/// What exciters go by during a stretch.
+/// Inputs of exciters during a stretch.
 #[derive(Clone, Copy)]
 pub(super) struct Excited<'a> {
     pub(super) slot: &'a SurfaceSlot,
@@ -59,7 +62,7 @@ pub(super) struct Exciters {
 }
 
 impl Exciters {
-    /// Nobody's. Allocates the ring.
+    /// State of an unused voice. Allocates the ring.
     pub(super) fn idle(seed: u64, sample_rate_hz: f64) -> Self {
         Self {
             collisions: Collisions::default(),
@@ -81,13 +84,14 @@ impl Exciters {
         self.pulses.begin(position);
     }
 
-    /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute sample grid.
+    /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute
+    /// sample grid.
     pub(super) fn press(&mut self, loudness: f64, velocity_m_s: [f64; 2]) {
         self.loudness.set_out(loudness);
         self.rubbing.turn(velocity_m_s);
     }
 
-    /// What the body is rubbed with, where friction sounds.
+    /// Rubbing of the body, where friction sounds.
     pub(super) fn rub(
         &mut self,
         by: &Excited<'_>,
@@ -126,7 +130,7 @@ impl Exciters {
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 
-    /// Whether nothing sounds from `end` on, when this was the last impulse.
+    /// Tests whether nothing sounds from `end` on, when this was the last impulse.
     pub(super) fn are_still(&self, last_n_s: f64, end: u64) -> bool {
         last_n_s.abs() < STILL_N_S && self.pulses.are_still(end)
     }

@@ -8,8 +8,8 @@ use crate::audio::smoothed::Smoothed;
 /// Share of a fade's length that its turning takes.
 const TURN: f64 = 0.2;
 
-/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so that
-/// the gain has no corner.
+/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so
+/// that the gain has no corner.
 pub(super) struct Rising {
     phase: f64,
     /// Per sample.
@@ -38,7 +38,7 @@ pub(super) struct Fades {
 }
 
 impl Fades {
-    /// Nobody's.
+    /// State of an unused voice.
     pub(super) fn idle(sample_rate_hz: f64) -> Self {
         Self { in_left: 0, rising: None, gain: 0.0, role_gain: Smoothed::new(sample_rate_hz) }
     }
@@ -50,7 +50,8 @@ impl Fades {
         self.in_left = if lands { 0 } else { shared.fade_samples() };
     }
 
-    /// Comes back out of a fade that stands at `phase`, from the level it has faded to and without a corner.
+    /// Comes back out of a fade that stands at `phase`, from the level it has faded to and without
+    /// a corner.
     pub(super) fn resume(&mut self, phase: Phase, shared: &Shared) {
         let step = 1.0 / f64::from(shared.fade_samples());
         // Before the first faded sample nothing has happened yet.
@@ -62,8 +63,9 @@ impl Fades {
         }
     }
 
-    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
-    /// its own beginning), out for one that ended, lapsed or was stolen. The phase after `n` samples.
+    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing
+    /// has its own beginning), out for one that ended, lapsed or was stolen. The phase after `n`
+    /// samples.
     pub(super) fn run(
         &mut self,
         mut phase: Phase,

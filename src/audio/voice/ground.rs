@@ -12,15 +12,16 @@ use asperity_dsp::micro_contact::Probe;
 use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
-    /// What presses on the touched body from here on; none within a cell of the absolute grid, where nobody asks. Before a stretch is rendered: how it
-    /// presses at the end of one would depend on where the blocks are cut.
+    /// Probe that presses on the touched body from here on; none within a cell of the absolute
+    /// grid, where nobody asks. Before a stretch is rendered: how it presses at the end of one
+    /// would depend on where the blocks are cut.
     pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
         let on_grid = stretch.position.is_multiple_of(MAX_BLOCK as u64);
         seat.current().filter(|_| on_grid).and_then(|slot| self.pressing(stretch.shared, slot))
     }
 
-    /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
-    /// presses.
+    /// Probe that presses on the touched body, as stiff as its ground and the force make it, to a
+    /// quarter of an octave. None while nothing presses.
     fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {
         let force_n = self.path.last.normal_force_n;
         if self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
@@ -32,7 +33,8 @@ impl Voice {
         Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
-    /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
+    /// Loudness of the contact: the harder it is pressed and the closer it nestles to the ground,
+    /// the more of it sounds.
     pub(super) fn loudness(
         &self,
         shared: &Shared,
@@ -66,7 +68,7 @@ impl Voice {
         then(&mut self.rolling, over);
     }
 
-    /// How the contact pressed at its last sample.
+    /// Pressing of the contact at its last sample.
     pub(super) fn touch_at(&self, position: u64) -> Touch {
         Touch {
             kind: TouchKind::Presses,

@@ -1,7 +1,9 @@
-//! Pad: the micro-contact of one voice (`dsp::micro_contact`), as stiff as what presses makes it, one row a sample.
+//! Pad: the micro-contact of one voice (`dsp::micro_contact`), as stiff as what presses makes it,
+//! one row a sample.
 //!
-//! Heights and forces in, [rows](PadSample) out. The stiffness follows the reported force, smoothed as the path is, at the steps of the
-//! absolute sample grid, so that it depends on no split into blocks.
+//! Heights and forces in, [rows](PadSample) out. The stiffness follows the reported force, smoothed
+//! as the path is, at the steps of the absolute sample grid, so that it depends on no split into
+//! blocks.
 
 use super::PadSample;
 use crate::prepared::probe::PreparedProbe;
@@ -16,17 +18,17 @@ pub(super) struct Pad {
     /// As stiff as what presses makes it.
     model: Box<MicroContact>,
     state: ContactState,
-    /// What the stiffness was worked out for.
+    /// Ground and force that the stiffness was worked out for.
     stiff_for: Option<(f64, Ground)>,
     /// The row that waits, where rows have to.
     late_row: PadSample,
-    /// How fast it comes down while it is still in the air, m/s; 0 once it has touched.
+    /// Closing speed while it is still in the air, m/s; 0 once it has touched.
     landing_m_s: f64,
     resets_told: u32,
 }
 
 impl Pad {
-    /// Nobody's. Allocates the model.
+    /// State of an unused voice. Allocates the model.
     pub(super) fn idle(probe: &PreparedProbe) -> Self {
         Self {
             model: Box::new(probe.micro_contact),
@@ -65,13 +67,15 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// It has been sliding for a while already, over ground of this height that rises by `rise_m_s` on the whole.
+    /// It has been sliding for a while already, over ground of this height that rises by `rise_m_s`
+    /// on the whole.
     ///
-    /// Finger and pad rise with it: set off from rest they would still swing when they are heard. On the whole means over the
-    /// time that a finger answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
+    /// Finger and pad rise with it: set off from rest they would still swing when they are heard.
+    /// On the whole means over the time that a finger answers in: with the slope of a millisecond's
+    /// roughness a lightly pressed one would be thrown.
     ///
-    /// The heights are those a sample before it leaves that line, there, and a sample later; how many of the heights after the middle one it
-    /// has been given.
+    /// The heights are those a sample before it leaves that line, there, and a sample later; how
+    /// many of the heights after the middle one it has been given.
     pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
         self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
         self.model.latency_samples()
@@ -89,7 +93,8 @@ impl Pad {
         rows.last().copied().unwrap_or_default()
     }
 
-    /// And is here, after such a row, on ground of this height that rises by `rise_m_s` on the whole.
+    /// And is here, after such a row, on ground of this height that rises by `rise_m_s` on the
+    /// whole.
     pub(super) fn appear(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
         self.late_row = PadSample { onset: None, ..*row };
         if self.state.resets() > 0 || row.contact_force_n > LEAD_IN_BLOW * force_n {
@@ -134,7 +139,8 @@ impl Pad {
         }
     }
 
-    /// Until it touches, a pad that comes down is as far as the surface: nothing is felt of its way through the air.
+    /// Until it touches, a pad that comes down is as far as the surface: nothing is felt of its way
+    /// through the air.
     fn feel_no_air(&mut self, rows: &mut [PadSample]) {
         for row in rows {
             if row.onset.is_some() || row.pad_m < row.height_m {
@@ -146,7 +152,7 @@ impl Pad {
         }
     }
 
-    /// Whether finger and pad rest where the last row says.
+    /// Tests whether finger and pad rest where the last row says.
     pub(super) fn is_settled(&self, row: &PadSample) -> bool {
         self.model.is_settled(&self.state, row.height_m, row.normal_force_n)
     }

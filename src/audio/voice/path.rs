@@ -11,21 +11,21 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
 const SAME_TOUCH_M: f64 = 0.01;
 
-/// Where a contact is before it is anybody's.
+/// Place of a contact that is unused.
 const IDLE: PathEvent =
     PathEvent { sample: 0, fraction: 0.0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
 
-/// Where a contact goes.
+/// Path of a contact.
 pub(super) struct Path {
     trajectory: Trajectory,
-    /// Where it was at the last sample that was rendered.
+    /// Place at the last sample that was rendered.
     pub(super) last: PathPoint,
     /// Its way through the body, where that is no plane.
     body: Option<BodyPath>,
 }
 
 impl Path {
-    /// Nobody's.
+    /// State of an unused voice.
     pub(super) fn idle(design: &TrajectoryDesign) -> Self {
         Self { trajectory: Trajectory::begin(design, &IDLE), last: PathPoint::default(), body: None }
     }
@@ -54,12 +54,13 @@ impl Path {
         }
     }
 
-    /// Whether places in the body are told.
+    /// Tests whether places in the body are told.
     pub(super) fn is_in_body(&self) -> bool {
         self.body.is_some()
     }
 
-    /// A report. A jump that no stroke makes changes nothing here: it returns the path that begins where the contact now is.
+    /// A report. A jump that no stroke makes changes nothing here: it returns the path that begins
+    /// where the contact now is.
     pub(super) fn moved(
         &mut self,
         sample: &ContactSample,
@@ -78,13 +79,13 @@ impl Path {
         None
     }
 
-    /// Whether a report would be a jump.
+    /// Tests whether a report would be a jump.
     pub(super) fn would_jump(&self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> bool {
         let mut path = self.trajectory;
         path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) == Moved::Teleported
     }
 
-    /// Whether a landing is so close that it can be the same touch.
+    /// Tests whether a landing is so close that it can be the same touch.
     pub(super) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
         let event = path_event(sample, slot, Stamp::default());
         let period_m = slot.period_m;
@@ -111,12 +112,13 @@ impl Path {
         self.trajectory.reported_force_n()
     }
 
-    /// Whether it has come to rest.
+    /// Tests whether it has come to rest.
     pub(super) fn is_still(&self) -> bool {
         self.trajectory.is_still() && self.body.as_ref().is_none_or(BodyPath::is_still)
     }
 
-    /// The straight line that ends where the contact is: points a step of `step_s` apart, of which the first is `steps` before it.
+    /// The straight line that ends where the contact is: points a step of `step_s` apart, of which
+    /// the first is `steps` before it.
     pub(super) fn lay_behind(&self, steps: usize, step_s: f64, points: &mut [PathPoint]) {
         let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last;
         for (i, point) in points.iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! Profile: heights along the path, with the micro-relief below the source's own band, as the probe's tip rides them.
+//! Profile: heights along the path, with the micro-relief below the source's own band, as the
+//! probe's tip rides them.
 
 use super::shared::Shared;
 use crate::audio::seat::{Noise, Seat};
@@ -21,11 +22,12 @@ pub(super) struct Along<'a> {
     pub(super) slopes: bool,
     /// The path lies at places of the body, [`Profile::at_m`].
     pub(super) in_body: bool,
-    /// What is looked at between samples too.
+    /// Look between samples.
     pub(super) between: Option<FromThere>,
 }
 
-/// Short waves of the micro-relief are looked at between samples, from the place of the sample before the first.
+/// Short waves of the micro-relief are looked at between samples, from the place of the sample
+/// before the first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FromThere {
     /// The coarsest octave that is.
@@ -35,10 +37,11 @@ pub(super) struct FromThere {
     pub(super) from_m: [f64; 2],
 }
 
-/// Where on the way from one sample to the next it is looked.
+/// Places of the look on the way from one sample to the next.
 const WAYS: [f64; 3] = [0.5, 0.25, 0.75];
 
-/// Short waves of the micro-relief, m: at samples, and between the sample before and each: midway, in the first half, in the second.
+/// Short waves of the micro-relief, m: at samples, and between the sample before and each: midway,
+/// in the first half, in the second.
 pub(super) struct Seen {
     position_m: [[[f64; 2]; MAX_BLOCK]; WAYS.len()],
     pub(super) at_m: [f64; MAX_BLOCK],
@@ -86,11 +89,11 @@ pub(super) struct Profile {
     pub(super) at_m: [[f64; 3]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
     noise_footprint_m: [f64; MAX_BLOCK],
-    /// What presses, N.
+    /// Pressing force, N.
     pub(super) force_n: [f64; MAX_BLOCK],
-    /// What lies there.
+    /// Ground that lies there.
     pub(super) surface: SurfaceBlock,
-    /// What was seen between samples.
+    /// Heights between samples.
     pub(super) seen: Seen,
     /// Room for another map, and for what is read beside the path.
     pub(super) rough: SurfaceBlock,
@@ -118,7 +121,8 @@ impl Profile {
         }
     }
 
-    /// Height of each point and the force that presses there. `cells` are those of the contact: they change no bit.
+    /// Height of each point and the force that presses there. `cells` are those of the contact:
+    /// they change no bit.
     pub(super) fn run(
         &mut self,
         seat: &mut Seat,
@@ -170,7 +174,8 @@ impl Profile {
         }
     }
 
-    /// The points, quantity by quantity, and how wide a sample of each is; their least and greatest coordinates.
+    /// The points, quantity by quantity, and how wide a sample of each is; their least and greatest
+    /// coordinates.
     fn lay_out(&mut self, shared: &Shared, points: &[PathPoint]) -> [[f64; 2]; 2] {
         let mut bounds_m = [f64::INFINITY, f64::NEG_INFINITY].map(|nothing| Pair::from([nothing; 2]));
         let step_s = 1.0 / shared.sample_rate_hz;

@@ -1,4 +1,5 @@
-//! Rest: a contact of which nothing moves or sounds falls asleep, and costs nothing until something stirs.
+//! Rest: a contact of which nothing moves or sounds falls asleep, and costs nothing until something
+//! stirs.
 
 use super::shared::Stretch;
 use super::{PadSample, Scratch, Voice};

@@ -3,14 +3,15 @@
 use crate::model::event::{Emphasis, Touching};
 use crate::model::id::{BodyId, ProbeId};
 
-/// What touches, who feels it and what is held, fixed while a contact lasts; how loud and how important it is.
+/// Role: what touches, who feels it and what is held, fixed while a contact lasts; how loud and how
+/// important it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Role {
     /// Haptic channel; none = heard only.
     pub(crate) actuator: Option<usize>,
     /// Place of the probe; none = the engine's own.
     pub(crate) probe: Option<usize>,
-    /// What rings with it.
+    /// Body that rings with it.
     pub(crate) holder: Option<BodyId>,
     pub(crate) gain: f64,
     pub(crate) importance: f64,

@@ -1,8 +1,10 @@
-//! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard (`dsp::rolling`).
+//! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard
+//! (`dsp::rolling`).
 //!
-//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion is slip, and what ground lies there, is worked out
-//! at the steps of the absolute sample grid; between two of them the share goes along a straight line. A contact whose reports tell no slip slides, and
-//! its heights stay what they are to the bit.
+//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion
+//! is slip, and what ground lies there, is worked out at the steps of the absolute sample grid;
+//! between two of them the share goes along a straight line. A contact whose reports tell no slip
+//! slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
 use crate::prepared::area::FINGERTIP_RADIUS_M;
@@ -16,19 +18,20 @@ use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
 
 /// Slower than this a contact neither rolls nor slides, m/s: it goes on as it did.
 const RESTING_M_S: f64 = 1e-4;
-/// Of what rolls free its weight presses, m/s².
+/// Acceleration with which the free weight of what rolls presses, m/s².
 const GRAVITY_M_S2: f64 = 9.81;
-/// What of the way to another share is left after a step of the grid: 8 ms for most of it, half a report at 60 Hz.
+/// Rest of the way to another share after a step of the grid: 8 ms for most of it, half a report at
+/// 60 Hz.
 const LAG: f64 = 0.8;
 
-/// How one contact rolls.
+/// Rolling of one contact.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Rolling {
     /// Speed of slip and radius of what rolls, of the newest report; none while it slides.
     told: Option<(f64, Option<f64>)>,
     /// Share of rolling at the last step of the grid, and at the next.
     share: [f64; 2],
-    /// Of the ground under its last sample.
+    /// Roughness of the ground under its last sample.
     roughness: f64,
     filter: RollingFilter,
     force: RollingForce,
@@ -36,7 +39,7 @@ pub(super) struct Rolling {
     sent: RollingForceState,
 }
 
-/// What is rolled over and how.
+/// Ground that is rolled over, and the radius.
 #[derive(Clone, Copy)]
 pub(super) struct RolledOver<'a> {
     pub(super) slot: &'a SurfaceSlot,
@@ -53,7 +56,7 @@ impl Rolling {
         self.told = sample.slip_m_s.map(|slip_m_s| (slip_m_s, sample.roll_radius_m));
     }
 
-    /// Whether any of it rolls, now or until the next step of the grid.
+    /// Tests whether any of it rolls, now or until the next step of the grid.
     pub(super) fn rolls(&self) -> bool {
         self.told.is_some() || self.share != [0.0; 2]
     }
@@ -102,8 +105,8 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground become those of the ride, and friction, where it is `rubbed` and known, acts on what slips; `slow_step` samples lie between two
-    /// steps of the grid.
+    /// Heights of the ground become those of the ride, and friction, where it is `rubbed` and
+    /// known, acts on what slips; `slow_step` samples lie between two steps of the grid.
     pub(super) fn run(
         &mut self,
         position: u64,
@@ -128,7 +131,7 @@ impl Rolling {
         }
     }
 
-    /// What is sent to the body comes from a patch that asperities enter and leave.
+    /// Softens what is sent to the body: it comes from a patch that asperities enter and leave.
     pub(super) fn soften(&mut self, position: u64, slow_step: u64, impulses_n_s: &mut [f64]) {
         if !self.rolls() {
             self.sent = Default::default();
@@ -150,7 +153,8 @@ impl Rolling {
         }
     }
 
-    /// The same of `n` heights that lie behind a contact that appears; its share stands still meanwhile.
+    /// Softens `n` heights that lie behind a contact that appears; its share stands still
+    /// meanwhile.
     pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
             self.run(0, MAX_BLOCK as u64, surface, n, true);
@@ -158,7 +162,8 @@ impl Rolling {
     }
 }
 
-/// What of a rolling body follows the ground, kg: as much as presses with its weight, as far as the probe has it. A finger gives way.
+/// Mass of a rolling body that follows the ground, kg: as much as presses with its weight, as far
+/// as the probe has it. A finger gives way.
 fn rolling_kg(probe: &Probe, force_n: f64) -> f64 {
     let most_kg = if probe.ridge_m > 0.0 { 0.0 } else { probe.finger_mass_kg };
     probe.pad_mass_kg + (force_n / GRAVITY_M_S2 - probe.pad_mass_kg).clamp(0.0, most_kg)

@@ -1,10 +1,10 @@
-//! What a voice rubs its body with.
+//! Rubbing of a voice on its body.
 
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// What one contact rubs with during a stretch.
+/// Rubbing of one contact during a stretch.
 pub(crate) struct RubBlock {
-    /// Whether it does.
+    /// True where it rubs.
     pub(crate) rubs: bool,
     /// The line along which it does: a unit vector of u and v.
     pub(crate) along: [f64; 2],

@@ -1,4 +1,5 @@
-//! Signals that pass from stage to stage during one stretch; made once, used by every voice in turn.
+//! Signals that pass from stage to stage during one stretch; made once, used by every voice in
+//! turn.
 
 use super::block::VoiceBlock;
 use super::exciters::ForceRun;
@@ -12,7 +13,7 @@ use asperity_texture::height_field::MAX_BLOCK;
 pub(crate) struct Scratch {
     pub(super) points: [PathPoint; MAX_BLOCK],
     pub(super) profile: Profile,
-    /// What the profile does between samples.
+    /// Bends of the profile between samples.
     pub(super) bends: [[Bend; 2]; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
     pub(super) force: ForceRun,

@@ -1,4 +1,4 @@
-//! What voices are rendered with: the designs that none of them owns, and the stretch of samples at hand.
+//! Shared parts of voices: the designs that none of them owns, and the stretch of samples at hand.
 
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;
@@ -7,20 +7,22 @@ use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every rate: its finest octave is
-/// whole where its cells pass at 11 kHz and gone where they pass at 22 kHz. Above 18 kHz next to nothing is left.
+/// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every
+/// rate: its finest octave is whole where its cells pass at 11 kHz and gone where they pass at 22
+/// kHz. Above 18 kHz next to nothing is left.
 const OVERLAY_RATE_HZ: f64 = 44_100.0;
 
-/// What every voice needs and none owns.
+/// Designs that every voice needs and none owns.
 pub(crate) struct Shared {
     pub(crate) idle_path: TrajectoryDesign,
     pub(crate) idle_output: ContactOutput,
     /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
     pub(crate) inner: InnerRate,
-    /// The same of what the bodies sound like, which lags by more.
+    /// Lag of what the bodies sound like, which is more.
     pub(crate) inner_audio: InnerRate,
-    /// Steps in which slow things are worked out, inner samples: as long in time however much the engine oversamples.
+    /// Steps in which slow things are worked out, inner samples: as long in time however much the
+    /// engine oversamples.
     pub(crate) slow_step: u64,
     /// The engine's own probe, and those that were added.
     pub(crate) own_probe: PreparedProbe,
@@ -39,26 +41,28 @@ impl Shared {
         added.unwrap_or(&self.own_probe)
     }
 
-    /// How many times as wide as a sample's way the micro-relief takes it to be, so that it is the same relief at every rate.
+    /// Factor of a sample's way by which the micro-relief widens it, so that it is the same relief
+    /// at every rate.
     pub(super) fn noise_footprints(&self) -> f64 {
         (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0)
     }
 
-    /// How long a contact takes to fade.
+    /// Time in which a contact fades.
     pub(super) fn fade_samples(&self) -> u32 {
         self.fade.len().saturating_sub(1) as u32
     }
 }
 
-/// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`] samples.
+/// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`]
+/// samples.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch<'a> {
     pub(crate) shared: &'a Shared,
-    /// What the contact's actuator plays.
+    /// Output of the contact's actuator.
     pub(crate) output: &'a ContactOutput,
     /// Absolute index of the first sample.
     pub(crate) position: u64,
-    /// How many.
+    /// Number.
     pub(crate) n: usize,
 }
 
@@ -67,12 +71,12 @@ pub(crate) struct Stretch<'a> {
 pub(crate) struct At {
     /// Absolute index of the first sample.
     pub(crate) position: u64,
-    /// How many.
+    /// Number.
     pub(crate) n: usize,
 }
 
 impl At {
-    /// Whether they begin at a step of the absolute grid.
+    /// Tests whether they begin at a step of the absolute grid.
     pub(crate) fn is_on_grid(self) -> bool {
         self.position.is_multiple_of(MAX_BLOCK as u64)
     }

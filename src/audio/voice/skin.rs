@@ -1,7 +1,8 @@
 //! Skin between the point that slides and what a fingertip feels.
 //!
-//! An acceleration goes through ridge and tissue (`dsp::actuator::Skin`). A displacement stays the pad's; where the channel asks for it, it
-//! grows with the area of contact, ∝ (F / 1 N)ⁿ (`model::actuator::FELT_FORCE_EXPONENT`). A tool has no skin, and neither happens.
+//! An acceleration goes through ridge and tissue (`dsp::actuator::Skin`). A displacement stays the
+//! pad's; where the channel asks for it, it grows with the area of contact, ∝ (F / 1 N)ⁿ
+//! (`model::actuator::FELT_FORCE_EXPONENT`). A tool has no skin, and neither happens.
 
 use super::exciters::Loudness;
 use crate::prepared::probe::PreparedProbe;
@@ -16,13 +17,14 @@ const STILL_M_S2: f64 = 1e-6;
 #[derive(Default)]
 pub(super) struct ContactSkin {
     now: Option<(Skin, SkinState)>,
-    /// How much more of it touches than at 1 N.
+    /// Area that touches, over that at 1 N.
     growth: Option<Loudness>,
     last_m_s2: f64,
 }
 
 impl ContactSkin {
-    /// It becomes as soft as speed and force make it: called at the steps of the absolute sample grid.
+    /// It becomes as soft as speed and force make it: called at the steps of the absolute sample
+    /// grid.
     pub(super) fn soften(
         &mut self,
         probe: &PreparedProbe,
@@ -47,7 +49,8 @@ impl ContactSkin {
         self.now = Some((skin, state));
     }
 
-    /// What it lets through, from a sample of the absolute grid on, `slow_step` of which lie between two calls of [`soften`](Self::soften).
+    /// Passes samples from one of the absolute grid on, `slow_step` of which lie between two calls
+    /// of [`soften`](Self::soften).
     pub(super) fn pass(&mut self, position: u64, slow_step: u64, felt: &mut [f64]) {
         if let Some(growth) = &self.growth {
             growth.weigh(position, slow_step, felt);
@@ -57,7 +60,7 @@ impl ContactSkin {
         self.last_m_s2 = felt.last().copied().unwrap_or(self.last_m_s2);
     }
 
-    /// Whether it has come to rest.
+    /// Tests whether it has come to rest.
     pub(super) fn is_still(&self) -> bool {
         self.now.is_none() || self.last_m_s2.abs() < STILL_M_S2
     }

@@ -13,15 +13,15 @@ const STICK_M_S: f64 = 1e-3;
 /// The tip of one contact.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tip {
-    /// What carries it, if it stands at a depth, N.
+    /// Force that carries it, if it stands at a depth, N.
     carried_n: Option<f64>,
     /// Coming down through the air.
     falls: bool,
-    /// What lies under the last sample.
+    /// Ground under the last sample.
     pub(super) ground: Ground,
 }
 
-/// What the ground under a sample pushes with.
+/// Force of the ground under a sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ground {
     gradient: [f64; 2],
@@ -34,7 +34,7 @@ impl Ground {
         Self { gradient: surface.gradient[i], friction: surface.friction[i], answer: surface.answer.at(i) }
     }
 
-    /// What the device behind it gives at most, N.
+    /// Largest force of the device behind it, N.
     pub(super) fn cap_n(&self) -> f64 {
         self.answer.cap_n
     }

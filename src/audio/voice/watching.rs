@@ -21,15 +21,15 @@ pub(super) struct Shown {
     cap_n: [f64; MAX_BLOCK],
 }
 
-/// What one contact has done in a stretch.
+/// Results of one contact in a stretch.
 pub(super) struct Done<'a> {
     pub(super) contact: ContactId,
     pub(super) role: &'a Role,
-    /// When it began, absolute sample.
+    /// Beginning, absolute sample.
     pub(super) begun: u64,
-    /// Where it was before the stretch.
+    /// Place before the stretch.
     pub(super) last_point: PathPoint,
-    /// Of the surface, m.
+    /// Size of the surface, m.
     pub(super) size_m: [f64; 2],
     /// It rests: the profile is none of its own.
     pub(super) asleep: bool,
@@ -52,8 +52,9 @@ impl Shown {
         }
     }
 
-    /// Shows the stretch to the tap, a row for each sample that leaves. Rows describe the instant `latency` samples back, so the
-    /// path's points are delayed by as much. `unshown_n_s` is what was sent to the body since the last row.
+    /// Shows the stretch to the tap, a row for each sample that leaves. Rows describe the instant
+    /// `latency` samples back, so the path's points are delayed by as much. `unshown_n_s` is what
+    /// was sent to the body since the last row.
     pub(super) fn show<T: Tap>(
         &mut self,
         stretch: Stretch<'_>,

@@ -1,12 +1,14 @@
-//! Edits of a scene as lines of a log: what a game added, replaced, removed or set while it recorded.
+//! Edits of a scene as lines of a log: what a game added, replaced, removed or set while it
+//! recorded.
 //!
 //! ```json
 //! {"t":0.5,"event":"replace_body","body":"tile","modes":{"format":"asperity.modes",…},"material":{…},"bus":0}
 //! {"t":0.8,"event":"replace_surface","surface":"plate","is":{"name":"plate","solid":"granite",…},"folder":"scenes"}
 //! {"t":0.9,"event":"audio_gain","bus":0,"gain":0.5}
 //! ```
-//! A body and a probe are held whole. A surface is held as its table of the scene file (`is`, with paths relative to `folder`); one that
-//! the game's own code has made cannot be written down, and whoever replays the log makes it under the same name.
+//! A body and a probe are held whole. A surface is held as its table of the scene file (`is`, with
+//! paths relative to `folder`); one that the game's own code has made cannot be written down, and
+//! whoever replays the log makes it under the same name.
 
 use crate::model::body::Body;
 use crate::model::material::Material;

@@ -74,7 +74,8 @@ fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
     }
 }
 
-/// A preset's name, or a table of constants: elastic ones, and what else differs from the default material.
+/// A preset's name, or a table of constants: elastic ones, and what else differs from the default
+/// material.
 fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
     let table = match fields.take("material") {
         None => return Ok(None),

@@ -1,4 +1,5 @@
-//! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
+//! Reads a TOML table key by key, so that every refusal can name the place, the value and the
+//! remedy.
 
 use crate::files::{FileError, nearest};
 use crate::parameters::Parameter;
@@ -6,7 +7,8 @@ use asperity_dsp::limits::Range;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
-/// A table being read. Every key asked for becomes an accepted one; [`Fields::finish`] refuses the rest.
+/// A table being read. Every key asked for becomes an accepted one; [`Fields::finish`] refuses the
+/// rest.
 #[derive(Debug)]
 pub struct Fields {
     table: Table,

@@ -1,8 +1,8 @@
 //! The scene file: one TOML table a thing, in SI units, every key checked and named when refused.
 //!
-//! This file and its neighbours hold what a user wrote, as plain data with paths already relative to the
-//! file. Nothing here opens an image or knows the engine; [`Engine::from_scene`](crate::Engine::from_scene) turns a
-//! [`SceneFile`] into engine calls.
+//! This file and its neighbours hold what a user wrote, as plain data with paths already relative
+//! to the file. Nothing here opens an image or knows the engine;
+//! [`Engine::from_scene`](crate::Engine::from_scene) turns a [`SceneFile`] into engine calls.
 
 mod body;
 mod fields;
@@ -67,11 +67,13 @@ pub struct SceneFile {
 /// One haptic channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ActuatorEntry {
-    /// All that needs no other file and no level of the scene: its `full_scale`, `felt_force_exponent` and `limit_peaks` do not count.
+    /// All that needs no other file and no level of the scene: its `full_scale`,
+    /// `felt_force_exponent` and `limit_peaks` do not count.
     pub settings: ActuatorSettings,
     /// Metres or m/s² at sample value 1; none = by the level policy.
     pub full_scale: Option<f64>,
-    /// n of a finger's displacement ∝ Fⁿ; none = [`FELT_FORCE_EXPONENT`](crate::model::actuator::FELT_FORCE_EXPONENT) where the level is by
+    /// n of a finger's displacement ∝ Fⁿ; none =
+    /// [`FELT_FORCE_EXPONENT`](crate::model::actuator::FELT_FORCE_EXPONENT) where the level is by
     /// policy, otherwise 0.
     pub felt_force_exponent: Option<f64>,
     /// Keeps the channel within ±1, whatever the device; none = where the level is by policy.
@@ -89,9 +91,11 @@ pub struct AudioEntry {
     pub name: Option<String>,
     /// Linear gain; none = by the level policy.
     pub gain: Option<f64>,
-    /// Pascals at 1 m at sample value 1, of bodies whose modes are in pascals; none = their numbers are as any other's.
+    /// Pascals at 1 m at sample value 1, of bodies whose modes are in pascals; none = their numbers
+    /// are as any other's.
     pub pascals_at_full_scale: Option<f64>,
-    /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where the gain is by policy.
+    /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where
+    /// the gain is by policy.
     pub limit: Option<bool>,
 }
 

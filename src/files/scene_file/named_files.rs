@@ -21,7 +21,8 @@ impl BodyEntry {
 }
 
 impl SurfaceEntry {
-    /// The pictures that its source and its roughness are made from. What a source of one's own reads is not known.
+    /// The pictures that its source and its roughness are made from. What a source of one's own
+    /// reads is not known.
     #[must_use]
     pub fn named_files(&self) -> Vec<&Path> {
         let mut all = Vec::new();

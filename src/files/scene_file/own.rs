@@ -1,4 +1,5 @@
-//! `own = { kind = "NAME", … }`: a source that the engine does not know, made by whoever opens the scene.
+//! `own = { kind = "NAME", … }`: a source that the engine does not know, made by whoever opens the
+//! scene.
 
 use super::fields::Fields;
 use crate::files::FileError;
@@ -14,11 +15,14 @@ pub struct OwnSource {
     table: Table,
 }
 
-/// Makes the sources of one kind from what a scene says, for a surface of so many metres along u and v.
+/// Makes the sources of one kind from what a scene says, for a surface of so many metres along u
+/// and v.
 ///
-/// A function: it captures nothing. What it makes is steered with [`Scene::change_surface`](crate::Scene::change_surface), by the id that
-/// [`Engine::names`](crate::Engine) tells; a source that is to hold a handle of its own (an `Arc`) is added in code, by `Surface::new`. It may be called
-/// more than once for a surface: where a scene leaves levels out, reference strokes touch a copy.
+/// A function: it captures nothing. What it makes is steered with
+/// [`Scene::change_surface`](crate::Scene::change_surface), by the id that
+/// [`Engine::names`](crate::Engine) tells; a source that is to hold a handle of its own (an `Arc`)
+/// is added in code, by `Surface::new`. It may be called more than once for a surface: where a
+/// scene leaves levels out, reference strokes touch a copy.
 pub type MakeSource = fn(&OwnSource, [f64; 2]) -> Result<Box<dyn HeightField>, FileError>;
 
 impl OwnSource {

@@ -22,7 +22,8 @@ pub struct SurfaceEntry {
     pub(crate) written: (Table, PathBuf),
     /// Body that rings when the surface is touched; none = silent.
     pub body: Option<String>,
-    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
+    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is
+    /// its own amplitudes.
     pub strike_position: usize,
     /// Source of its heights.
     pub source: Source,

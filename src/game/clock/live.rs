@@ -14,32 +14,34 @@
 //! | runs ahead of the audio for good | no stamp within a window comes close | tied anew, counted |
 //! | runs in slow motion or fast | the smallest lead drifts by the same share in window after window | its pace is followed, counted |
 
-/// A stamp that parts from the audio by more than this is no jitter and no burst, s: eight ticks at 60 Hz are
-/// 117 ms apart.
+/// A stamp that parts from the audio by more than this is no jitter and no burst, s: eight ticks at
+/// 60 Hz are 117 ms apart.
 pub(super) const BREAK_S: f64 = 0.25;
 /// Lateness that is the clocks' and not the network's or the frame's, s.
 const SLIGHTLY_LATE_S: f64 = 0.002;
 /// Share of a larger lateness that moves the mapping.
 const FOLLOW: f64 = 0.05;
-/// How far the mapping creeps back with each early stamp, samples: a drift of 200 ppm at 60 events/s.
+/// Step by which the mapping creeps back with each early stamp, samples: a drift of 200 ppm at 60
+/// events/s.
 const CREEP_SAMPLES: f64 = 0.2;
-/// … and this share of the smallest lead of the last window, so that a latency nobody needs goes within seconds.
+/// … and this share of the smallest lead of the last window, so that a latency nobody needs goes
+/// within seconds.
 const CREEP_SHARE: f64 = 0.01;
 /// Length of a window in which the smallest lead is looked for, s of audio.
 const WINDOW_S: f64 = 0.3;
 /// Events a window needs to say something.
 const WINDOW_EVENTS: u32 = 4;
-/// Drift of the smallest lead, seconds a second, that is another pace; and once another pace is known, one that
-/// corrects it.
+/// Drift of the smallest lead, seconds a second, that is another pace; and once another pace is
+/// known, one that corrects it.
 const OTHER_PACE: f64 = 0.1;
 const CORRECTION: f64 = 0.03;
 /// Slowest and fastest pace that is followed; slower is a pause.
 const PACES: (f64, f64) = (1.0 / 16.0, 16.0);
 
-/// What the clock has done with a stamp.
+/// Decision of the clock about a stamp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Followed {
-    /// Where it lies, samples.
+    /// Place of it, samples.
     pub sample: f64,
     /// Game time and audio were tied anew.
     pub jumped: bool,
@@ -61,7 +63,7 @@ struct Tie {
     time_s: f64,
     sample: f64,
     latest: (f64, f64),
-    /// Where the latest stamp was put, samples.
+    /// Place of the latest stamp, samples.
     latest_sample: f64,
     window: Window,
     /// Smallest lead of the window before, and when that window began.
@@ -92,7 +94,7 @@ impl Live {
         Self { sample_rate_hz, max_lead: max_lead_s * sample_rate_hz, pace: 1.0, tied: None }
     }
 
-    /// The same window at another rate, to be tied anew.
+    /// Window at another rate, to be tied anew.
     pub fn at_rate(&mut self, sample_rate_hz: f64) {
         let max_lead_s = self.max_lead / self.sample_rate_hz;
         *self = Self { pace: self.pace, ..Self::new(max_lead_s, sample_rate_hz) };
@@ -114,7 +116,7 @@ impl Live {
         self.pace
     }
 
-    /// Where game time `time_s` lies when the audio is at `position`.
+    /// Place of game time `time_s` when the audio is at `position`.
     pub fn follow(&mut self, time_s: f64, position: f64) -> Followed {
         let break_samples = BREAK_S * self.sample_rate_hz;
         let Some(mut tie) = self.tied.take() else {
@@ -187,7 +189,8 @@ impl Live {
         ahead
     }
 
-    /// At the end of a window: follows another pace, if two windows in a row agree about it. Whether they do.
+    /// At the end of a window: follows another pace, if two windows in a row agree about it.
+    /// Whether they do.
     fn weigh_pace(&mut self, tie: &mut Tie, time_s: f64, sample: f64) -> bool {
         let now = tie.latest.1;
         let window = std::mem::replace(&mut tie.window, Window::at(now));

@@ -32,7 +32,7 @@ const LEAP_M: f64 = 0.002;
 const HOP: f64 = 2.5;
 /// Cosine below which a contact turns sharply.
 const SHARP: f64 = 0.25;
-/// So many reports a hop, at most, are no strokes with a hitch now and then.
+/// Number of reports a hop, at most, that are no strokes with a hitch now and then.
 const REPORTS_A_HOP: u32 = 20;
 /// Fields of a histogram for a factor of two.
 const FIELDS_AN_OCTAVE: f64 = 16.0;
@@ -290,7 +290,8 @@ impl Sheet {
         let wraps = |c: usize| {
             self.period_m[c].is_finite() && [from[c], to[c]].iter().all(|uv| (0.0..=1.0).contains(uv))
         };
-        // So fast that an edge is crossed at every other step: whole laps are no movement, if they are few.
+        // So fast that an edge is crossed at every other step: whole laps are no movement, if they
+        // are few.
         let is_fast = |c: &usize| wraps(*c) && said_m[*c].abs() > FAST * self.period_m[*c];
         let laps = [0, 1].map(|c| (said_m[c] - d[c]) / self.period_m[c]);
         let whole = |c: usize| (laps[c] - laps[c].round()).abs() < 0.05 && laps[c].abs() < MOST_LAPS;

@@ -18,17 +18,19 @@ use std::sync::Arc;
 /// Levels at which the order of modes is asked for, dB SPL: between a whisper and what hurts.
 const HEARD_DB_SPL: (f64, f64) = (30.0, 100.0);
 
-/// How many bodies that have rung out are kept.
+/// Number of bodies that have rung out and are kept.
 const MOST_RESTED: usize = 16;
 
 /// Least time between equal sounds, s.
 const LEAST_TIME_S: limits::Range = limits::Range::new(0.0, 60.0, "0 to 60 s");
 
 impl Scene {
-    /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a body of PLA on the first bus.
+    /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a
+    /// body of PLA on the first bus.
     ///
     /// # Errors
-    /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
+    /// When every place is taken, the modes cannot be rendered at this rate, the material is
+    /// impossible, or there is no such bus.
     pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
         self.collect();
         let (id, body) = (BodyId(self.bodies.free()?), body.into());
@@ -38,9 +40,10 @@ impl Scene {
         Ok(id)
     }
 
-    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones until they
-    /// sleep (64 bodies at a time; beyond that the quietest fades), and strokes on its surfaces take the new material at once. What it sends
-    /// to further buses stays, unless its own bus is another.
+    /// Gives a body other modes, another material and another bus while it sounds; the old modes
+    /// ring out under the new ones until they sleep (64 bodies at a time; beyond that the quietest
+    /// fades), and strokes on its surfaces take the new material at once. What it sends to further
+    /// buses stays, unless its own bus is another.
     ///
     /// # Errors
     /// As [`add_body`](Self::add_body), or when the body is not in this scene.
@@ -56,7 +59,8 @@ impl Scene {
         Ok(())
     }
 
-    /// How loud impacts on a body are beside strokes, whether its own [`Body::strike_gain`], the scene file or the level policy has said it.
+    /// Gain of impacts on a body beside strokes, whether its own [`Body::strike_gain`], the scene
+    /// file or the level policy has said it.
     ///
     /// # Errors
     /// When the body is not in this scene.
@@ -79,8 +83,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Lets a body sound on a further bus as well, so loud, linear, without a step; 0 for no longer. For several listeners, as on a split
-    /// screen: a bus each, and how near the body is to each of them. The gain of the body counts on all of them.
+    /// Lets a body sound on a further bus as well, so loud, linear, without a step; 0 for no
+    /// longer. For several listeners, as on a split screen: a bus each, and how near the body is to
+    /// each of them. The gain of the body counts on all of them.
     ///
     /// ```
     /// use asperity::{AudioBus, Body, Config, Engine, Material, Stock};
@@ -94,8 +99,9 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// When the body is not in this scene, there is no such bus or it is the body's own (whose gain is the body's), the gain is not in
-    /// 0–1000, the body is sent to four others already, or the queue is full.
+    /// When the body is not in this scene, there is no such bus or it is the body's own (whose gain
+    /// is the body's), the gain is not in 0–1000, the body is sent to four others already, or the
+    /// queue is full.
     pub fn set_body_send(&mut self, id: BodyId, bus: usize, gain: f64) -> Result<(), AddError> {
         self.known_body(id)?;
         self.checked_bus(bus)?;
@@ -166,7 +172,8 @@ impl Scene {
         Ok((Message::SetBody { id, body, bus, sends, gain, stroking }, known))
     }
 
-    /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB; where nobody knows, that of speech.
+    /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB;
+    /// where nobody knows, that of speech.
     fn loudest_db_spl(&self, body: &Body) -> f64 {
         let loudest = body.model.modes.iter().fold(0.0, |most, mode| f64::max(most, mode.amplitude.abs()));
         let known = self
@@ -177,14 +184,15 @@ impl Scene {
         known.map_or(LOUDEST_DB_SPL, |db| db.clamp(HEARD_DB_SPL.0, HEARD_DB_SPL.1))
     }
 
-    /// How strokes excite a body.
+    /// Excitation of a body by strokes.
     pub(super) fn stroking(&self, body: &KnownBody) -> Result<Stroking, DesignError> {
         let (mass_kg, rate_hz) = (colliding_kg(&self.config.probe), self.config.inner_rate_hz());
         Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
     }
 
-    /// Takes a body away; it rings out until it sleeps. Of bodies that were removed or replaced 64 ring at a time: beyond that the quietest
-    /// fades within a tenth of a second, and is counted ([`Stats::given_way`](crate::Stats::given_way)).
+    /// Takes a body away; it rings out until it sleeps. Of bodies that were removed or replaced 64
+    /// ring at a time: beyond that the quietest fades within a tenth of a second, and is counted
+    /// ([`Stats::given_way`](crate::Stats::given_way)).
     ///
     /// # Errors
     /// When it is not in this scene or the queue is full.
@@ -198,8 +206,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Frees surfaces, bodies and ports that the audio half no longer needs; whatever edits the scene does it
-    /// too. Returns how many came home. A few bodies are kept for the next of the same kind, which is added within microseconds.
+    /// Frees surfaces, bodies and ports that the audio half no longer needs; whatever edits the
+    /// scene does it too. Returns how many came home. A few bodies are kept for the next of the
+    /// same kind, which is added within microseconds.
     pub fn collect(&mut self) -> usize {
         let mut freed = 0;
         while let Some(dead) = self.from_audio.receive() {

@@ -7,12 +7,13 @@ use crate::model::error::AddError;
 use crate::model::id::SurfaceId;
 
 impl Scene {
-    /// Opens a port and gives its reading end, for any one thread; the kinds are in [`live::ports`](crate::live::ports). It shows what
-    /// leaves from the next block on, until its reading end is dropped.
+    /// Opens a port and gives its reading end, for any one thread; the kinds are in
+    /// [`live::ports`](crate::live::ports). It shows what leaves from the next block on, until its
+    /// reading end is dropped.
     ///
     /// # Errors
-    /// When what is wanted does not exist, a number is outside its range, all [`max_ports`](crate::Config::max_ports) are open, or the
-    /// queue is full.
+    /// When what is wanted does not exist, a number is outside its range, all
+    /// [`max_ports`](crate::Config::max_ports) are open, or the queue is full.
     pub fn open_port<K: PortKind>(&mut self, kind: K) -> Result<K::Port, AddError> {
         self.collect();
         let setup = PortSetup {

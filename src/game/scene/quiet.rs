@@ -34,8 +34,9 @@ impl Scene {
         Ok(())
     }
 
-    /// The game stands still: all that is felt and heard fades within 20 ms, bodies ring out unheard, and contacts wait, however long,
-    /// without lapsing. Impacts that wait for their time are dropped.
+    /// The game stands still: all that is felt and heard fades within 20 ms, bodies ring out
+    /// unheard, and contacts wait, however long, without lapsing. Impacts that wait for their time
+    /// are dropped.
     ///
     /// # Errors
     /// When the queue is full.
@@ -43,8 +44,8 @@ impl Scene {
         self.set_paused(true)
     }
 
-    /// The game goes on: a contact comes back where its next report says. With an exact clock the next report holds at the sample that
-    /// is rendered next, as after a [`reset`](Self::reset).
+    /// The game goes on: a contact comes back where its next report says. With an exact clock the
+    /// next report holds at the sample that is rendered next, as after a [`reset`](Self::reset).
     ///
     /// # Errors
     /// When the queue is full.
@@ -53,9 +54,9 @@ impl Scene {
         self.reset()
     }
 
-    /// Every contact ends, and whatever rings is damped within a tenth of a second: for a cut, a menu, the end of a level. What is
-    /// reported afterwards begins anew; moves of contacts that have ended so are counted as orphaned, and impacts that wait for their time are
-    /// dropped.
+    /// Every contact ends, and whatever rings is damped within a tenth of a second: for a cut, a
+    /// menu, the end of a level. What is reported afterwards begins anew; moves of contacts that
+    /// have ended so are counted as orphaned, and impacts that wait for their time are dropped.
     ///
     /// # Errors
     /// When the queue is full.
@@ -77,8 +78,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Slow motion or fast: so many game seconds a second of audio, from the last report on. It is for the exact clock; a live one finds
-    /// the pace by itself. Contacts move slower by as much; forces and blows stay what they are.
+    /// Slow motion or fast: so many game seconds a second of audio, from the last report on. It is
+    /// for the exact clock; a live one finds the pace by itself. Contacts move slower by as much;
+    /// forces and blows stay what they are.
     ///
     /// # Errors
     /// When the scale is not in 0.01–100.

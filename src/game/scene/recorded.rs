@@ -8,14 +8,16 @@ use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Scene {
-    /// Records from now on, in memory, what is reported and how the scene is edited (bodies, surfaces, probes, buses, gains), each with the
-    /// time at which the engine applies it, so that [`offline::render`](crate::offline::render) gives the same samples. Ids that
-    /// `names` does not name are recorded by number. Recording allocates on the game thread as it grows.
+    /// Records from now on, in memory, what is reported and how the scene is edited (bodies,
+    /// surfaces, probes, buses, gains), each with the time at which the engine applies it, so that
+    /// [`offline::render`](crate::offline::render) gives the same samples. Ids that `names` does
+    /// not name are recorded by number. Recording allocates on the game thread as it grows.
     pub fn start_recording(&mut self, names: &Names) {
         self.recording = Some(Recording::new(names));
     }
 
-    /// The same, written to a file (or whatever else takes bytes) while the game runs, by a thread of its own.
+    /// Recording written to a file (or whatever else takes bytes) while the game runs, by a thread
+    /// of its own.
     ///
     /// # Errors
     /// When the system gives no thread.
@@ -64,13 +66,13 @@ impl Scene {
         self.counters.epoch.store(self.clock.epoch(), Relaxed);
     }
 
-    /// What a recording can say of a surface.
+    /// Description of a surface for a recording.
     pub(super) fn described(&self, surface: &Surface) -> LogSurface {
         let described = surface.described.as_ref().filter(|_| self.recording.is_some());
         described.and_then(|described| described.downcast_ref::<LogSurface>()).cloned().unwrap_or_default()
     }
 
-    /// What the audio half has not come to when game time begins anew is dropped there, and here.
+    /// Drops here, as there, what the audio half has not come to when game time begins anew.
     pub(super) fn forget_what_waits(&mut self) {
         let time_s = self.counters.position.load(Relaxed) as f64 / self.config.inner_rate_hz();
         if let Some(recording) = &mut self.recording {

@@ -1,4 +1,5 @@
-//! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
+//! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer
+//! ones, when the way is full.
 
 use super::Scene;
 use crate::game::silence::SilentBecause;
@@ -23,8 +24,8 @@ impl Scene {
     ///
     /// # Errors
     /// The event is handed back with the reason: a bad number, an unknown name, time running
-    /// backwards (with an exact clock), or a full queue. Moves are the last to be refused: when the queue runs full only the
-    /// newest move of each contact is kept, and sent with the next report.
+    /// backwards (with an exact clock), or a full queue. Moves are the last to be refused: when the
+    /// queue runs full only the newest move of each contact is kept, and sent with the next report.
     #[expect(
         clippy::result_large_err,
         reason = "the event is handed back whole, without a box on the game thread"
@@ -41,8 +42,9 @@ impl Scene {
         })
     }
 
-    /// What speaks against anything being heard or felt, or against its being right, the likeliest reason first; empty when nothing
-    /// does: reports that contradict themselves are among it. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    /// Reasons against anything being heard or felt, or against its being right, the likeliest
+    /// first; empty when nothing does: reports that contradict themselves are among it. Each reason
+    /// says what would be right. To be asked when a scene is silent, or to be logged.
     ///
     /// ```
     /// use asperity::{Config, Engine};
@@ -95,7 +97,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether an impact comes sooner after the last on its body than the least time, and is no stronger; it counts as the last if not.
+    /// Tests whether an impact comes sooner after the last on its body than the least time, and is
+    /// no stronger; it counts as the last if not.
     fn comes_too_soon(&mut self, stamp: Stamp, impact: &Impact) -> bool {
         let least_time_s = self.given.get(&impact.body).map_or(0.0, |body| body.least_time_s);
         if least_time_s == 0.0 {
@@ -113,7 +116,7 @@ impl Scene {
         too_soon
     }
 
-    /// Whether what an event touches has modes.
+    /// Tests whether what an event touches has modes.
     fn rings(&self, event: &ContactEvent) -> bool {
         let has_modes =
             |id: BodyId| self.bodies.get(id.0).is_some_and(|body| body.lowest_mode_hz.is_finite());
@@ -166,7 +169,8 @@ impl Scene {
                 self.check_hand(touching.actuator, touching.holder, touching.probe)?;
                 within("gain", touching.gain, limits::impact::GAIN)?;
                 within("importance", touching.importance, limits::impact::IMPORTANCE)?;
-                // What rubs itself rings once: the same impulses back on it would cancel to silence.
+                // What rubs itself rings once: the same impulses back on it would cancel to
+                // silence.
                 touching.holder = touching.holder.filter(|holder| known.body != Some(*holder));
                 let (sample, held) = sample.held()?;
                 (ContactEvent::Begin { contact, touching, sample }, held)
@@ -286,7 +290,7 @@ impl Scene {
         self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
-    /// Where an impact hits a body that has shapes.
+    /// Place of an impact on a body that has shapes.
     fn struck(&self, impact: &Impact) -> Option<StrikePlace> {
         let field = self.bodies.get(impact.body.0)?.field.as_ref()?;
         field.place(impact.at_m?, impact.direction)

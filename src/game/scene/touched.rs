@@ -1,4 +1,4 @@
-//! What is touched: where a place of a body is on its surface, and how what gives way answers a depth.
+//! Places: where a place of a body is on its surface, and how what gives way answers a depth.
 
 use super::{Scene, Touched};
 use crate::model::contact_sample::Place;
@@ -10,7 +10,8 @@ use crate::model::strike_field::StrikePlace;
 use asperity_texture::tip_law::TipLaw;
 
 impl Scene {
-    /// Texture coordinates of a point in the body of a surface that has a [frame](crate::Surface::frame), m; none for one that has none.
+    /// Texture coordinates of a point in the body of a surface that has a
+    /// [frame](crate::Surface::frame), m; none for one that has none.
     ///
     /// # Errors
     /// When the surface is not in this scene.
@@ -24,8 +25,8 @@ impl Scene {
         Ok(frame.map(|frame| frame.uv(point_m, size_m)))
     }
 
-    /// How a surface that gives way answers the depth of a tip, for the thread that drives a device; none for a hard one. It is the law
-    /// that the surface was added with.
+    /// Law of a surface that gives way for the depth of a tip, for the thread that drives a device;
+    /// none for a hard one. It is the law that the surface was added with.
     ///
     /// # Errors
     /// When the surface is not in this scene.
@@ -63,7 +64,8 @@ impl Scene {
         }
     }
 
-    /// Where a contact is on a body that has shapes: its own place counts before its surface's frame; none where both are missing.
+    /// Place of a contact on a body that has shapes: its own place counts before its surface's
+    /// frame; none where both are missing.
     pub(super) fn touched(&self, event: &ContactEvent) -> Option<StrikePlace> {
         let (ContactEvent::Begin { contact, sample, .. } | ContactEvent::Moved { contact, sample, .. }) =
             event
@@ -75,7 +77,8 @@ impl Scene {
         let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
         let Place { frame, size_m, .. } = &known.place;
         let in_frame = || Some(frame.as_ref()?.point_m(sample.uv, *size_m));
-        // A bow stands on what its frame says, which at the edge of a sheet is no part of the sheet.
+        // A bow stands on what its frame says, which at the edge of a sheet is no part of the
+        // sheet.
         let inward = frame.as_ref().filter(|_| known.rubs).map(SurfaceFrame::inward);
         field.place(touched.at_m.or_else(in_frame)?, inward)
     }

@@ -2,8 +2,8 @@
 //!
 //! The renderer sits behind a lock that only the callback holds while a stream runs; the callback
 //! *tries* it and plays silence otherwise, so it never waits. A supervisor thread owns the stream,
-//! rebuilds it when the device is lost, and keeps the engine's state meanwhile. Without any device the
-//! engine runs into a [null sink](crate::live::null_sink) and says so.
+//! rebuilds it when the device is lost, and keeps the engine's state meanwhile. Without any device
+//! the engine runs into a [null sink](crate::live::null_sink) and says so.
 
 mod streams;
 
@@ -23,7 +23,8 @@ pub struct DeviceOptions {
     pub host: Option<String>,
     /// Device id as [`list`] prints it; missing: the default output.
     pub device: Option<String>,
-    /// A second device for the actuators, in channel order; its clock is followed by a small resampler.
+    /// A second device for the actuators, in channel order; its clock is followed by a small
+    /// resampler.
     pub haptic_device: Option<String>,
     /// Which channels carry what; missing: audio on 0 and 1, actuators from 2 on.
     pub channels: Option<ChannelMap>,
@@ -114,7 +115,8 @@ fn describe(device: &cpal::Device) -> Option<DeviceInfo> {
     })
 }
 
-/// The rate that the chosen device runs at, Hz: build the engine for it, because the device's rate wins.
+/// The rate that the chosen device runs at, Hz: build the engine for it, because the device's rate
+/// wins.
 ///
 /// # Errors
 /// When the host or device is not there or does not tell.
@@ -185,8 +187,8 @@ pub fn play(renderer: Renderer) -> Result<Player, DeviceError> {
     play_on(renderer, &DeviceOptions::default())
 }
 
-/// Plays on a chosen device. A named device that is not there is an error; without a name the engine
-/// runs silently when there is no device at all.
+/// Plays on a chosen device. A named device that is not there is an error; without a name the
+/// engine runs silently when there is no device at all.
 ///
 /// # Errors
 /// When the host or device is not there or refuses the configuration.

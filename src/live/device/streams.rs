@@ -14,13 +14,14 @@ use std::time::{Duration, Instant};
 
 /// Waits between attempts to get a lost device back.
 const RETRY: Duration = Duration::from_millis(500);
-/// Frames a callback to ask for when nobody says: left to themselves some sound servers keep two seconds.
+/// Frames a callback to ask for when nobody says: left to themselves some sound servers keep two
+/// seconds.
 const BLOCK_FRAMES: u32 = 512;
 /// Haptic samples kept between two devices.
 const HAPTIC_FILL: usize = 1024;
 
-/// The device that host and id name. Each call opens the host anew: two PulseAudio streams of one host
-/// object refuse to play on two sinks.
+/// The device that host and id name. Each call opens the host anew: two PulseAudio streams of one
+/// host object refuse to play on two sinks.
 pub(super) fn find(host: Option<&str>, id: Option<&str>) -> Result<Device, DeviceError> {
     let host = self::host(host)?;
     match id {
@@ -62,7 +63,8 @@ struct Job {
     orders: Sender<Message>,
 }
 
-/// Builds the first streams (so that errors reach the caller) and starts the thread that keeps them.
+/// Builds the first streams (so that errors reach the caller) and starts the thread that keeps
+/// them.
 pub(super) fn supervise(
     device: Arc<Mutex<Interleaver>>,
     options: DeviceOptions,

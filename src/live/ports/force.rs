@@ -1,8 +1,11 @@
-//! Force port: the 3-D force on the finger for force-feedback devices, as [rows](super::ForceRows) at the ticks of the device's own rate.
+//! Force port: the 3-D force on the finger for force-feedback devices, as [rows](super::ForceRows)
+//! at the ticks of the device's own rate.
 //!
-//! x and y lie along the surface's u and v, z points out of it. Contacts of one hand on surfaces that lie differently are summed in each
-//! surface's own frame. `asperity render --force` writes the same rows. A row leaves 4 ticks after its own, so it is what a tool feels of
-//! textures and blows; a loop that holds a device against a wall runs [`Scene::tip_law`](crate::Scene::tip_law) on its own thread.
+//! x and y lie along the surface's u and v, z points out of it. Contacts of one hand on surfaces
+//! that lie differently are summed in each surface's own frame. `asperity render --force` writes
+//! the same rows. A row leaves 4 ticks after its own, so it is what a tool feels of textures and
+//! blows; a loop that holds a device against a wall runs [`Scene::tip_law`](crate::Scene::tip_law)
+//! on its own thread.
 
 use super::force_rows::{ForceRow, ForceRows, Of};
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
@@ -100,8 +103,8 @@ impl ForcePort {
         (self.words.read(&mut words) == ROW_WORDS).then(|| unpacked(&words))
     }
 
-    /// The newest force of a hand, N, and its tick; what lies before is passed over, and is not counted as lost. For a device loop that
-    /// wants the present and nothing else.
+    /// The newest force of a hand, N, and its tick; what lies before is passed over, and is not
+    /// counted as lost. For a device loop that wants the present and nothing else.
     pub fn newest(&mut self, hand: Actuator) -> Option<(u64, [f64; 3])> {
         let rows = std::iter::from_fn(|| self.read());
         rows.filter(|row| row.of == Of::Hand(hand)).last().map(|row| (row.tick, row.force_n))

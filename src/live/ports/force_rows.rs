@@ -1,4 +1,5 @@
-//! Force rows: the 3-D force on the finger at the ticks of a device's own rate, low-passed so that no tick hears what lies beyond it.
+//! Force rows: the 3-D force on the finger at the ticks of a device's own rate, low-passed so that
+//! no tick hears what lies beyond it.
 //!
 //! ```text
 //! row(k, contact) = Σ h(τ − k) F(τ) / Σ h(τ − k)        τ: time of a sample in ticks, |τ − k| < 4
@@ -7,12 +8,15 @@
 //! |row|          ≤ cap        the lowest of what a row is made of; row = 0 before a touch out of the air
 //! ```
 //!
-//! A row is the force at its tick's own instant: flat within 0.3 % up to a quarter of the rate, 50 dB down from 0.66 of it on. (A mean over
-//! the tick lets 900 Hz through a 1 kHz output at −19 dB, as 100 Hz, and speaks of the middle of the tick.) It is complete
-//! 4 ticks later. The weights of what a contact has told are brought to 1, so that a constant force is itself from the first row to the last.
+//! A row is the force at its tick's own instant: flat within 0.3 % up to a quarter of the rate, 50
+//! dB down from 0.66 of it on. (A mean over the tick lets 900 Hz through a 1 kHz output at −19 dB,
+//! as 100 Hz, and speaks of the middle of the tick.) It is complete 4 ticks later. The weights of
+//! what a contact has told are brought to 1, so that a constant force is itself from the first row
+//! to the last.
 //!
-//! A filter with a steep edge swings about a jump of the force, by up to 9 % of it, before it as after it. Two limits come after it therefore: a
-//! row is no larger than what the device gives, and one that lies before a touch is exactly 0 N.
+//! A filter with a steep edge swings about a jump of the force, by up to 9 % of it, before it as
+//! after it. Two limits come after it therefore: a row is no larger than what the device gives, and
+//! one that lies before a touch is exactly 0 N.
 
 use crate::link::tap::ContactBlock;
 use crate::model::event::{Actuator, ContactId};
@@ -78,7 +82,8 @@ struct Track {
 struct OpenRow {
     /// True where the contact was there at this tick.
     is_told: bool,
-    /// Nothing has pressed for as long as a row reaches, and what presses next comes after this tick.
+    /// Nothing has pressed for as long as a row reaches, and what presses next comes after this
+    /// tick.
     is_before_touch: bool,
     weight: f64,
     sum_n: [f64; 3],
@@ -111,7 +116,8 @@ impl Track {
 }
 
 impl ForceRows {
-    /// For `rate_hz` rows a second. Allocates room for `contacts` at once; more make it allocate later.
+    /// For `rate_hz` rows a second. Allocates room for `contacts` at once; more make it allocate
+    /// later.
     #[must_use]
     pub fn new(rate_hz: f64, sample_rate_hz: f64, contacts: usize) -> Self {
         let ticks_a_sample = rate_hz / sample_rate_hz;
@@ -138,7 +144,8 @@ impl ForceRows {
         self.kernel[index] * (1.0 - rest) + self.kernel[index + 1] * rest
     }
 
-    /// Adds what a contact does during a stretch of at most 64 samples; whatever ended before must have been [closed](Self::close).
+    /// Adds what a contact does during a stretch of at most 64 samples; whatever ended before must
+    /// have been [closed](Self::close).
     pub fn add(&mut self, block: &ContactBlock<'_>) {
         let Some(last) = block.force_n.len().checked_sub(1) else { return };
         let index = self.track(block);
@@ -187,7 +194,8 @@ impl ForceRows {
         })
     }
 
-    /// Hands out the rows that nothing from a sample on can change: the contacts of a tick in order, then the hands.
+    /// Hands out the rows that nothing from a sample on can change: the contacts of a tick in
+    /// order, then the hands.
     pub fn close(&mut self, before: u64, mut row: impl FnMut(ForceRow)) {
         let done = (self.ticks(before) as u64).saturating_add(1).saturating_sub(LAG_TICKS);
         while let Some(tick) = self.tracks.iter().map(|track| track.open[0]).min().filter(|tick| *tick < done)

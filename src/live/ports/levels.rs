@@ -1,4 +1,5 @@
-//! Levels port: how hard two motors turn, a heavy one for what is slow and a light one for what is fast.
+//! Levels port: how hard two motors turn, a heavy one for what is slow and a light one for what is
+//! fast.
 
 use super::Feed;
 use super::points::{Point, PointSettings, Points, PointsPort, Tone};
@@ -37,14 +38,16 @@ impl PortKind for Levels {
 }
 
 impl LevelsPort {
-    /// The oldest levels that are left, heavy and light, as peaks of sines in the unit of the samples.
+    /// The oldest levels that are left, heavy and light, as peaks of sines in the unit of the
+    /// samples.
     pub fn read(&mut self) -> Option<[f64; 2]> {
         let Point { low, high, .. } = self.points.read()?;
         self.newest = [low, high];
         Some(self.newest)
     }
 
-    /// The newest levels; what lies before is passed over, and is not counted as lost. The last ones again when nothing is new.
+    /// The newest levels; what lies before is passed over, and is not counted as lost. The last
+    /// ones again when nothing is new.
     pub fn newest(&mut self) -> [f64; 2] {
         while self.read().is_some() {}
         self.newest

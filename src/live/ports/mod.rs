@@ -1,4 +1,5 @@
-//! Ports: what a running engine hands to other threads than the sound card's, opened and closed while it runs.
+//! Ports: what a running engine hands to other threads than the sound card's, opened and closed
+//! while it runs.
 //!
 //! | kind | gives | for |
 //! |---|---|---|
@@ -8,9 +9,10 @@
 //! | [`Levels`] | how hard a heavy and a light motor turn | a pad that rumbles |
 //! | [`Picture`] | the heights of a surface that changes | whoever draws it |
 //!
-//! [`Scene::open_port`](crate::Scene::open_port) gives the reading end, which may go to any one thread and be read at any pace: nothing
-//! waits for it, and whoever comes late loses the oldest and is told how much. Dropping it closes the port. A kind is one file: what is
-//! wanted as plain data, the end on the audio half ([`Outlet`]), the reading end.
+//! [`Scene::open_port`](crate::Scene::open_port) gives the reading end, which may go to any one
+//! thread and be read at any pace: nothing waits for it, and whoever comes late loses the oldest
+//! and is told how much. Dropping it closes the port. A kind is one file: what is wanted as plain
+//! data, the end on the audio half ([`Outlet`]), the reading end.
 //!
 //! ```
 //! use asperity::live::ports::{Feed, Pcm};

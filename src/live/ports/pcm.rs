@@ -62,7 +62,8 @@ impl Outlet for PcmOutlet {
 }
 
 impl PcmPort {
-    /// Copies the oldest samples that are left into `out`; tells how many. What lies behind them in `out` stays as it was.
+    /// Copies the oldest samples that are left into `out`; tells how many. What lies behind them in
+    /// `out` stays as it was.
     pub fn read(&mut self, out: &mut [f32]) -> usize {
         let mut count = 0;
         while count < out.len() {
@@ -98,8 +99,9 @@ impl PcmPort {
         self.words.lost()
     }
 
-    /// Number of samples since the port was opened that lie before the next one to be read: those read and those lost. The first one is the first
-    /// of the block that was rendered next after the opening.
+    /// Number of samples since the port was opened that lie before the next one to be read: those
+    /// read and those lost. The first one is the first of the block that was rendered next after
+    /// the opening.
     #[must_use]
     pub fn position(&self) -> u64 {
         self.read + self.words.lost()

@@ -1,13 +1,15 @@
 //! Picture port: the heights of a surface that changes, sand for instance, tile by tile.
 //!
-//! The simulation writes what changed once a frame (60 a second) and the audio half has no part in it.
+//! The simulation writes what changed once a frame (60 a second) and the audio half has no part in
+//! it.
 
 use crate::link::outlet::{Opened, PortKind, PortSetup};
 use crate::model::error::AddError;
 use crate::model::id::SurfaceId;
 pub use asperity_texture::moving_picture::PictureReader as PicturePort;
 
-/// A port of pictures. Its reading end draws the tiles that have [changed](PicturePort::changed) since it last looked.
+/// A port of pictures. Its reading end draws the tiles that have [changed](PicturePort::changed)
+/// since it last looked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Picture {
     /// Surface; one whose source never changes is refused.

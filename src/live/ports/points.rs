@@ -1,7 +1,9 @@
-//! Points port: an amplitude and a frequency some hundred times a second, for hardware that plays no waveform.
+//! Points port: an amplitude and a frequency some hundred times a second, for hardware that plays
+//! no waveform.
 //!
-//! The points are those of the kernel [`vibration_points`](asperity_dsp::vibration_points): what a file made of the same samples by the
-//! causal reduction holds, to the bit. The samples are taken for displacement, so a channel that gives acceleration sounds too high.
+//! The points are those of the kernel [`vibration_points`](asperity_dsp::vibration_points): what a
+//! file made of the same samples by the causal reduction holds, to the bit. The samples are taken
+//! for displacement, so a channel that gives acceleration sounds too high.
 
 use super::Feed;
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};

@@ -1,11 +1,13 @@
 //! The table of materials. A new one is one row here.
 //!
-//! Sources: **[KleinPAT]** Wang and James, "KleinPAT: optimal mode conflation for time-domain precomputation of acoustic transfer", ACM
-//! Transactions on Graphics 38(4), 2019, table 4. **[Cremer]** Cremer and Heckl, "Structure-borne sound", 2nd ed. 1988, tables of loss factors.
-//! **[Seo]** Seo et al., "Friction coefficients in a longitudinal direction between the finger pad and selected materials for
-//! different normal forces and curvatures", Ergonomics 52(5), 2009. **[Handbook]** values that handbooks of materials agree on within some per
-//! cent. **Assumed**: our own, from no measurement. **Recalled**: not
-//! read again in the source. **Measured**: decays of recorded pieces, listed in `docs/materials.md`.
+//! Sources: **[KleinPAT]** Wang and James, "KleinPAT: optimal mode conflation for time-domain
+//! precomputation of acoustic transfer", ACM Transactions on Graphics 38(4), 2019, table 4.
+//! **[Cremer]** Cremer and Heckl, "Structure-borne sound", 2nd ed. 1988, tables of loss factors.
+//! **[Seo]** Seo et al., "Friction coefficients in a longitudinal direction between the finger pad
+//! and selected materials for different normal forces and curvatures", Ergonomics 52(5), 2009.
+//! **[Handbook]** values that handbooks of materials agree on within some per cent. **Assumed**:
+//! our own, from no measurement. **Recalled**: not read again in the source. **Measured**: decays
+//! of recorded pieces, listed in `docs/materials.md`.
 //!
 //! β is 0 throughout: next to η no piece at hand shows it.
 
@@ -37,7 +39,8 @@ macro_rules! materials {
                 };
             )+
 
-            /// Every preset with its name, as scene files and contact logs spell it, and the sources of its numbers.
+            /// Every preset with its name, as scene files and contact logs spell it, and the
+            /// sources of its numbers.
             pub const PRESETS: &'static [MaterialPreset] = &[$(MaterialPreset {
                 name: $name,
                 what: $what,
@@ -51,8 +54,8 @@ macro_rules! materials {
     };
 }
 
-// The micro-relief is in units of the engine's default one: how rough a finish is, R says; only what was cast against boards or cut from clay
-// is coarser than that.
+// The micro-relief is in units of the engine's default one: how rough a finish is, R says; only
+// what was cast against boards or cut from clay is coarser than that.
 materials! {
     STEEL, "steel", "Carbon steel, ground.":
         E 200e9, nu 0.29, rho 7850.0, "[KleinPAT]";

@@ -1,7 +1,7 @@
 use super::*;
 use std::fmt::Write;
 
-/// Where `docs/materials.md` holds the table.
+/// Path of the table, `docs/materials.md`.
 const MARKS: [&str; 2] = ["<!-- made from the table of presets -->\n", "<!-- end -->\n"];
 
 #[test]
@@ -37,8 +37,8 @@ fn numbers_that_no_material_has_are_refused_by_name() {
     }
 }
 
-/// Measured decays of pieces: material, frequency in Hz, T60 in s, and whose. The recordings and tables are public; decays of recordings are
-/// those of the fit's strongest mode in that range.
+/// Measured decays of pieces: material, frequency in Hz, T60 in s, and whose. The recordings and
+/// tables are public; decays of recordings are those of the fit's strongest mode in that range.
 const MEASURED: [(Material, f64, f64, &str); 9] = [
     (Material::ALUMINIUM, 1254.5, 2.05, "a vibraphone bar, recorded"),
     (Material::STEEL, 2095.0, 2.7, "a glockenspiel bar, recorded"),

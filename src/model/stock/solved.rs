@@ -1,11 +1,14 @@
 //! Stock shapes without a closed form: hollow things and a door.
 //!
-//! Can, bottle, pan and barrel are thin shells of revolution (Love's theory, a harmonic around at a time, conical elements), made by
-//! `tests/independent/stock_shells.py`. The same program has Leissa's free disc (NASA SP-160: 5.358, 9.003, 12.439, 20.475) to four digits and
-//! Rayleigh's free cylinder (*Theory of sound*, §235) within 0.3 %. The table has the modes that are heard, with the antinode where it is struck.
-//! Box and door are ten-node tetrahedra, one through the wall, solved by `asperity modes`; `cli/tests/stock_bodies.rs` makes the meshes and solves
-//! them again. The door is within 1 % of Leissa's free plate (J. Sound Vib. 31, 1973, sides 5 : 2: 21.643, 33.050, 60.137, 71.484, 117.45), which
-//! has no thickness; the box's first five modes lie 3 to 5 % below those of a mesh half as fine, so that 1 to 2 % are left. All for ν = 0.3.
+//! Can, bottle, pan and barrel are thin shells of revolution (Love's theory, a harmonic around at a
+//! time, conical elements), made by `tests/independent/stock_shells.py`. The same program has
+//! Leissa's free disc (NASA SP-160: 5.358, 9.003, 12.439, 20.475) to four digits and Rayleigh's
+//! free cylinder (*Theory of sound*, §235) within 0.3 %. The table has the modes that are heard,
+//! with the antinode where it is struck. Box and door are ten-node tetrahedra, one through the
+//! wall, solved by `asperity modes`; `cli/tests/stock_bodies.rs` makes the meshes and solves them
+//! again. The door is within 1 % of Leissa's free plate (J. Sound Vib. 31, 1973, sides 5 : 2:
+//! 21.643, 33.050, 60.137, 71.484, 117.45), which has no thickness; the box's first five modes lie
+//! 3 to 5 % below those of a mesh half as fine, so that 1 to 2 % are left. All for ν = 0.3.
 //!
 //! | shape | unit, `size_m` | proportions |
 //! |---|---|---|
@@ -25,7 +28,8 @@ pub(super) struct Solved<const MODES: usize> {
     volume: f64,
     /// Surface that radiates: of hollow things what is outside.
     outside: f64,
-    /// ω L √(ρ / E), and the shape, its mean square 1 over the body, along the outward normal at the three strike positions.
+    /// ω L √(ρ / E), and the shape, its mean square 1 over the body, along the outward normal at
+    /// the three strike positions.
     modes: [(f64, [f64; 3]); MODES],
 }
 
@@ -39,7 +43,8 @@ pub(super) fn shape<const MODES: usize>(of: &Solved<MODES>, material: &Material,
     }
 }
 
-/// Hollow box 4 : 3 : 2, its wall 1/40 of its length; on the largest face beside the middle, in it, towards a corner.
+/// Hollow box 4 : 3 : 2, its wall 1/40 of its length; on the largest face beside the middle, in it,
+/// towards a corner.
 pub(super) const BOX: Solved<32> = Solved {
     volume: 0.07575,
     outside: 3.033,
@@ -78,7 +83,8 @@ pub(super) const BOX: Solved<32> = Solved {
         (1.69002, [0.7790, -0.0827, -0.7609]),
     ],
 };
-/// Can, 1.5 diameters high, its wall 1/60 of its height, open above; at the rim, on the wall, on the bottom.
+/// Can, 1.5 diameters high, its wall 1/60 of its height, open above; at the rim, on the wall, on
+/// the bottom.
 pub(super) const CAN: Solved<32> = Solved {
     volume: 0.040724,
     outside: 2.443,
@@ -156,7 +162,8 @@ pub(super) const BOTTLE: Solved<32> = Solved {
         (5.99117, [-1.9622, 0.0000, 0.0000]),
     ],
 };
-/// Pan, 0.16 of its diameter high, its wall 1/80 of it; at the rim, in the middle of the bottom, beside it.
+/// Pan, 0.16 of its diameter high, its wall 1/80 of it; at the rim, in the middle of the bottom,
+/// beside it.
 pub(super) const PAN: Solved<32> = Solved {
     volume: 0.012952,
     outside: 2.072,
@@ -195,7 +202,8 @@ pub(super) const PAN: Solved<32> = Solved {
         (2.97514, [-2.0855, 0.0000, -2.6386]),
     ],
 };
-/// Barrel with both heads, its wall 1/45 of its height; on the bulge, on a head, near an end of the wall.
+/// Barrel with both heads, its wall 1/45 of its height; on the bulge, on a head, near an end of the
+/// wall.
 pub(super) const BARREL: Solved<32> = Solved {
     volume: 0.054954,
     outside: 2.473,

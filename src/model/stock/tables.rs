@@ -1,7 +1,8 @@
-//! Mode tables of the stock shapes that have no closed form: what frequency is multiplied by, and the shape at the strike positions.
+//! Mode tables of the stock shapes that have no closed form: what frequency is multiplied by, and
+//! the shape at the strike positions.
 //!
-//! Made by `tests/independent/stock_modes.py` (its head names the methods and what each was checked against); every shape has a mean
-//! square of 1 over the body.
+//! Made by `tests/independent/stock_modes.py` (its head names the methods and what each was checked
+//! against); every shape has a mean square of 1 over the body.
 
 /// Free square plate, ν = 0.3: ω a² √(ρ h / D) for side a; near a corner, in the middle, between.
 pub(super) const PLATE: [(f64, [f64; 3]); 64] = [
@@ -70,7 +71,8 @@ pub(super) const PLATE: [(f64, [f64; 3]); 64] = [
     (647.867, [-0.9108, 0.0000, 0.0206]),
     (657.362, [0.1082, -1.6118, -0.1955]),
 ];
-/// Free circular plate, ν = 0.3: ω R² √(ρ h / D) for radius R; near the edge, in the middle, halfway.
+/// Free circular plate, ν = 0.3: ω R² √(ρ h / D) for radius R; near the edge, in the middle,
+/// halfway.
 pub(super) const DISC: [(f64, [f64; 3]); 63] = [
     (5.35833, [2.2041, 0.0000, 0.6906]),
     (9.00314, [-1.3567, 2.0096, 0.8145]),
@@ -136,7 +138,8 @@ pub(super) const DISC: [(f64, [f64; 3]); 63] = [
     (414.956, [0.7758, 0.0000, -0.0235]),
     (417.741, [-1.6077, 0.0000, 0.1377]),
 ];
-/// Free cuboid 4 : 2 : 1, ν = 0.3: ω L √(ρ / E) for the longest side L; on the largest face near a corner, in its middle, between.
+/// Free cuboid 4 : 2 : 1, ν = 0.3: ω L √(ρ / E) for the longest side L; on the largest face near a
+/// corner, in its middle, between.
 pub(super) const BLOCK: [(f64, [f64; 3]); 48] = [
     (1.35812, [-1.5098, 1.0054, -0.0669]),
     (1.43203, [2.0492, 0.0000, 0.4875]),
@@ -187,7 +190,8 @@ pub(super) const BLOCK: [(f64, [f64; 3]); 48] = [
     (9.88758, [0.7792, 0.0000, -0.5889]),
     (9.90866, [-1.0499, 0.0000, 0.9216]),
 ];
-/// Hemispherical shell that bends without stretching: ω a² √(ρ h / (D (1 − ν))) for radius a; at the rim.
+/// Hemispherical shell that bends without stretching: ω a² √(ρ h / (D (1 − ν))) for radius a; at
+/// the rim.
 pub(super) const BOWL: [(f64, [f64; 1]); 13] = [
     (5.24004, [2.2869]),
     (14.7255, [3.0930]),

@@ -22,7 +22,8 @@ fn assert_close(ours: &[f64], published: &[f64], within: f64) {
 
 #[test]
 fn a_bar_is_the_timoshenko_bar_of_an_independent_program_within_a_hundredth() {
-    // tests/independent/stock_modes.py: ω L² √(ρ A / (E I)) of a free bar 30 times as long as thick.
+    // tests/independent/stock_modes.py: ω L² √(ρ A / (E I)) of a free bar 30 times as long as
+    // thick.
     let exact = [22.283, 60.967, 118.24, 192.77, 283.2, 388.07, 505.86, 635.08, 774.34, 922.34];
     let gyration_m = 0.01 / 12f64.sqrt();
     let unit = gyration_m * EVEN.rod_speed_m_s() / 0.09;
@@ -35,7 +36,8 @@ fn a_slender_bar_has_the_roots_and_the_shapes_of_its_closed_form() {
     // Blevins, Formulas for natural frequency and mode shape: 4.730041, 7.853205, 10.995608.
     for (n, root) in [(1, 4.730_040_74), (2, 7.853_204_62), (3, 10.995_607_8), (4, 14.137_165_5)] {
         assert!((bending_root(n) - root).abs() < 1e-7, "{n}");
-        // An end moves twice the root mean square; the nodes of the first mode lie at 0.2242 lengths.
+        // An end moves twice the root mean square; the nodes of the first mode lie at 0.2242
+        // lengths.
         assert!((bending_shape(root, 0.0) - 2.0).abs() < 1e-6);
     }
     assert!(bending_shape(bending_root(1), 0.22416).abs() < 1e-4);
@@ -51,7 +53,8 @@ fn a_slender_bar_has_the_roots_and_the_shapes_of_its_closed_form() {
 fn stock_shapes_have_the_published_ratios_of_their_modes() {
     // Rayleigh, Theory of sound, section 235.
     assert_close(&ratios(Stock::Bowl), &[1.0, 2.8102, 5.4316], 1e-4);
-    // Leissa, J. Sound Vib. 31 (1973), upper bounds of a Ritz method with fewer terms: 13.489, 19.789, 24.432, 35.024.
+    // Leissa, J. Sound Vib. 31 (1973), upper bounds of a Ritz method with fewer terms: 13.489,
+    // 19.789, 24.432, 35.024.
     assert_close(&ratios(Stock::Plate), &[1.0, 19.789 / 13.489, 24.432 / 13.489, 35.024 / 13.489], 0.01);
     // Leissa, NASA SP-160 (1969), table 2.5, at ν = 0.33: 5.253, 9.084, 12.23, 20.52, 21.6.
     assert_close(
@@ -103,7 +106,8 @@ fn every_shape_of_every_material_is_a_model_the_engine_takes() {
 
 #[test]
 fn a_steel_bar_of_twenty_centimetres_has_the_pitch_of_the_closed_form() {
-    // f = 1.0279 h √(E/ρ) / L² for a free bar of thickness h (Fletcher and Rossing, The physics of musical instruments, section 2.16).
+    // f = 1.0279 h √(E/ρ) / L² for a free bar of thickness h (Fletcher and Rossing, The physics of
+    // musical instruments, section 2.16).
     let lowest_hz = frequencies_hz(Stock::Bar, &Material::STEEL, 0.2)[0];
     let closed_form_hz = 1.0279 * (0.2 / 30.0) * (200e9f64 / 7850.0).sqrt() / 0.04;
     assert!((lowest_hz / closed_form_hz - 1.0).abs() < 6e-3, "{lowest_hz} against {closed_form_hz}");
@@ -119,13 +123,15 @@ fn a_strike_at_a_node_leaves_that_mode_out() {
 
 #[test]
 fn a_door_is_the_published_free_plate_and_hollow_things_ring_lower_than_solid_ones() {
-    // Leissa, J. Sound Vib. 31 (1973), free plate with sides 5 : 2: ω a² √(ρ h / D) of the longer side.
+    // Leissa, J. Sound Vib. 31 (1973), free plate with sides 5 : 2: ω a² √(ρ h / D) of the longer
+    // side.
     let published = [21.643, 33.050, 60.137, 71.484, 117.45];
     let stiffness = (plate_stiffness_n_m(&EVEN, 0.02) / (EVEN.density_kg_m3 * 0.02)).sqrt();
     let ours: Vec<f64> =
         Stock::Door.shape(&EVEN, 1.0).modes.iter().map(|(omega, _)| omega / stiffness).collect();
     assert_close(&ours, &published, 0.013);
-    // Rayleigh's bound: a bottom holds a can's wall, so that it rings above the free cylinder of its middle surface.
+    // Rayleigh's bound: a bottom holds a can's wall, so that it rings above the free cylinder of
+    // its middle surface.
     let (radius, wall) = (1.0 / 3.0, 1.0 / 60.0);
     let free = wall / (12f64.sqrt() * radius * radius) * 6.0 / 5f64.sqrt();
     let can = Stock::Can.shape(&EVEN, 1.0).modes[0].0 / EVEN.rod_speed_m_s();

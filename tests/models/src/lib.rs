@@ -1,4 +1,5 @@
-//! The ring that other threads read and the pool that renders in parallel, under every schedule of a model checker.
+//! The ring that other threads read and the pool that renders in parallel, under every schedule of
+//! a model checker.
 #![cfg(test)]
 
 mod link {
@@ -31,7 +32,8 @@ mod ring_model;
 /// Most schedules of a model: a pool of threads has more than anybody waits for.
 const MOST: usize = 20_000;
 
-/// Tries every schedule with at most so many preemptions, or the first [`MOST`] of them; returns how many there were.
+/// Tries every schedule with at most so many preemptions, or the first [`MOST`] of them; returns
+/// how many there were.
 fn schedules(preemptions: usize, model: impl Fn() + Sync + Send + 'static) -> usize {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     let count = std::sync::Arc::new(AtomicUsize::new(0));

@@ -1,4 +1,5 @@
-//! The pool: jobs go out and all come home, however helpers sleep and wake; it ends whenever it is asked to.
+//! The pool: jobs go out and all come home, however helpers sleep and wake; it ends whenever it is
+//! asked to.
 
 use crate::pool::{Job, Pool};
 use crate::schedules;

@@ -1,7 +1,9 @@
-//! A bounded queue in the place of `crossbeam-queue`'s, whose own atomics a model checker does not see.
+//! A bounded queue in the place of `crossbeam-queue`'s, whose own atomics a model checker does not
+//! see.
 //!
-//! Its content is handed over under a lock; whether it is empty is read from a relaxed counter, which promises less than the real one does. A
-//! helper that is not woken because of that is one that the pool's own fences do not hold.
+//! Its content is handed over under a lock; whether it is empty is read from a relaxed counter,
+//! which promises less than the real one does. A helper that is not woken because of that is one
+//! that the pool's own fences do not hold.
 
 use loom::sync::Mutex;
 use loom::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -33,7 +35,8 @@ impl<T> ArrayQueue<T> {
     }
 
     pub(crate) fn pop(&self) -> Option<T> {
-        // Without the lock where there is nothing: looking orders nothing, as the real queue's does not.
+        // Without the lock where there is nothing: looking orders nothing, as the real queue's does
+        // not.
         if self.is_empty() {
             return None;
         }

@@ -1,5 +1,6 @@
 //! A minute of randomised events, swaps and removals, rendered inside a function that the real-time
-//! sanitizer watches: any allocation, lock or blocking system call in it ends the program with a trace.
+//! sanitizer watches: any allocation, lock or blocking system call in it ends the program with a
+//! trace.
 
 #[path = "../../common/mod.rs"]
 mod common;

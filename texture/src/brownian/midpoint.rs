@@ -1,13 +1,15 @@
 //! Random midpoint displacement, the document's construction of Brownian paths and surfaces.
 //!
-//! A new point is a weighted mean of the points known near it plus a normal number. The law E\[ΔX²\] = |r|^{2H} leaves
-//! nothing of it to choice: weights and variance are those of the conditional distribution, the weights adding up to 1,
+//! A new point is a weighted mean of the points known near it plus a normal number. The law
+//! E\[ΔX²\] = |r|^{2H} leaves nothing of it to choice: weights and variance are those of the
+//! conditional distribution, the weights adding up to 1,
 //!
 //! ```text
 //! Σ_j w_j r_ij^{2H} + μ = ρ_i^{2H},  Σ_j w_j = 1        v = Σ_i w_i ρ_i^{2H} − ½ Σ_ij w_i w_j r_ij^{2H}
 //! ```
 //!
-//! with ρ_i the distance of known point i from the new one and r_ij that between known points i and j.
+//! with ρ_i the distance of known point i from the new one and r_ij that between known points i and
+//! j.
 //!
 //! | step | known points, in half steps from the new one |
 //! |---|---|
@@ -15,18 +17,20 @@
 //! | middles of edges | the 12 corners and centres within 3; 4 middles already made beside and above |
 //! | middles of a path | 4 ends; the middle already made before |
 //!
-//! Source: the texture-analysis thesis §6.3.2. What we changed: its variances 2^{−jH} and 2^{−(i+j)H}
-//! scale with r^H where the law needs r^{2H} (a surface of nominal dimension 2.1 would measure 2.59);
-//! its surface rule defines centres of squares only, so the step on the edges is added; the far
-//! corner has variance 2^H, and the corners are correlated as the law asks; and its means are of the nearest two or four points
-//! alone, which leaves creases along the coarse grid: with the variance the law leaves open for them, dimensions of 2.1 and
-//! 2.2 measured 2.34 and 2.41. The measured dimension is now within 0.03 of the nominal one in the mean of four surfaces, and
-//! one surface's scatters as an exact one's does (tests).
+//! Source: the texture-analysis thesis §6.3.2. What we changed: its variances 2^{−jH} and
+//! 2^{−(i+j)H} scale with r^H where the law needs r^{2H} (a surface of nominal dimension 2.1 would
+//! measure 2.59); its surface rule defines centres of squares only, so the step on the edges is
+//! added; the far corner has variance 2^H, and the corners are correlated as the law asks; and its
+//! means are of the nearest two or four points alone, which leaves creases along the coarse grid:
+//! with the variance the law leaves open for them, dimensions of 2.1 and 2.2 measured 2.34 and
+//! 2.41. The measured dimension is now within 0.03 of the nominal one in the mean of four surfaces,
+//! and one surface's scatters as an exact one's does (tests).
 
 use asperity_dsp::rng::Rng;
 use std::collections::BTreeMap;
 
-/// Places of points near a new one that may be known, in half steps; corners first, then those of the same step.
+/// Places of points near a new one that may be known, in half steps; corners first, then those of
+/// the same step.
 type Offsets = &'static [[isize; 2]];
 
 const CENTRE: Offsets = &[
@@ -94,14 +98,14 @@ pub(super) fn path(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     line.values
 }
 
-/// X itself on a square of n × n samples, cut from one of (2^k + 1)², before it is brought to an rms:
-/// X(0, 0) = 0, and variances are those of an edge of length 1.
+/// X itself on a square of n × n samples, cut from one of (2^k + 1)², before it is brought to an
+/// rms: X(0, 0) = 0, and variances are those of an edge of length 1.
 #[must_use]
 pub fn raw_surface(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let span = (n - 1).next_power_of_two();
     let mut square = Grid::new(span, span + 1);
-    // Corners (0,0), (1,0), (0,1), (1,1) of the unit square: variances 0, 1, 1, 2^H; the two near ones
-    // have covariance ρ = 1 − 2^{H−1}, each has c = 2^{H−1} with the far one.
+    // Corners (0,0), (1,0), (0,1), (1,1) of the unit square: variances 0, 1, 1, 2^H; the two near
+    // ones have covariance ρ = 1 − 2^{H−1}, each has c = 2^{H−1} with the far one.
     let c = 2.0_f64.powf(hurst - 1.0);
     let rho = 1.0 - c;
     let right = rng.normal();

@@ -11,11 +11,12 @@
 //! | y | height in grey levels of the document's 8-bit maps, 256 over the relief's range |
 //! | A | [`BrownianForce::newton_per_grey`]: 0.005 N for the orthogonal surface, 0.01 N for the others |
 //!
-//! Source: the texture-analysis thesis §6.4, equations 6.6 and 6.7 and the four experiments. What we
-//! changed: the printed Δy is the difference between two ticks of a 1 kHz loop, so that at audio rates
-//! the force would shrink by the ratio of the rates; ours is the derivative times that millisecond,
-//! the same at any rate. Equation 6.8 replaces the gradient by (Δy, 0, Δy), which fixes the direction
-//! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
+//! Source: the texture-analysis thesis §6.4, equations 6.6 and 6.7 and the four experiments. What
+//! we changed: the printed Δy is the difference between two ticks of a 1 kHz loop, so that at audio
+//! rates the force would shrink by the ratio of the rates; ours is the derivative times that
+//! millisecond, the same at any rate. Equation 6.8 replaces the gradient by (Δy, 0, Δy), which
+//! fixes the direction at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the
+//! thesis has none).
 
 use crate::answer::AnswerAt;
 pub use crate::force_rendering::Rendering;

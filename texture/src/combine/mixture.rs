@@ -1,4 +1,5 @@
-//! Mixtures of what two surfaces give: heights and what is felt beside them by one weight, forces by the same.
+//! Mixtures of what two surfaces give: heights and what is felt beside them by one weight, forces
+//! by the same.
 
 use crate::height_field::SurfaceBlock;
 

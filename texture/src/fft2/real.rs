@@ -4,16 +4,18 @@
 //! X(−kx, −ky) = conj X(kx, ky)         so that columns kx = 0 … width/2 say everything
 //! ```
 //! Two rows of an image travel through one complex transform, as its real and its imaginary part.
-//! Columns are not kept in an array of their own: they are made, transformed and used a few at a time,
-//! while they are in the cache, and a caller's filter is applied as they pass.
+//! Columns are not kept in an array of their own: they are made, transformed and used a few at a
+//! time, while they are in the cache, and a caller's filter is applied as they pass.
 
 use asperity_fft::num_complex::Complex64;
 use asperity_fft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// Bytes of the rows or columns that are transformed at once: two thirds of a first-level cache of 48 KiB.
+/// Bytes of the rows or columns that are transformed at once: two thirds of a first-level cache of
+/// 48 KiB.
 const BLOCK_BYTES: usize = 16 * 1024;
-/// Fewest of them: as many complex numbers as lie in one cache line, so that each line is read once.
+/// Fewest of them: as many complex numbers as lie in one cache line, so that each line is read
+/// once.
 const FEWEST_IN_BLOCK: usize = 4;
 
 /// Working memory of [`RealFft2`], for transforms of any sizes one after the other.
@@ -72,7 +74,8 @@ impl RealFft2 {
     /// Transforms `image`, row by row, and calls `take` with kx and X(kx, ·) for kx below `kept`.
     ///
     /// # Panics
-    /// When `image` does not hold [`RealFft2::len`] values or `kept` is beyond [`RealFft2::half_columns`].
+    /// When `image` does not hold [`RealFft2::len`] values or `kept` is beyond
+    /// [`RealFft2::half_columns`].
     pub fn forward(
         &self,
         image: &[f64],
@@ -104,9 +107,10 @@ impl RealFft2 {
         }
     }
 
-    /// Appends to `image`, row by row, the real part of the image whose spectrum is X(kx, ·) for kx below `kept`,
-    /// conj X(−kx, −·) for negative kx and zero elsewhere; not divided by the number of values. `give` is called
-    /// with each kx and must fill all of the column, whose former values mean nothing.
+    /// Appends to `image`, row by row, the real part of the image whose spectrum is X(kx, ·) for kx
+    /// below `kept`, conj X(−kx, −·) for negative kx and zero elsewhere; not divided by the number
+    /// of values. `give` is called with each kx and must fill all of the column, whose former
+    /// values mean nothing.
     ///
     /// # Panics
     /// When `kept` is beyond [`RealFft2::half_columns`].
@@ -142,10 +146,12 @@ impl RealFft2 {
         }
     }
 
-    /// Makes room and returns the distance between two rows. The row that an odd height lacks is zero.
+    /// Makes room and returns the distance between two rows. The row that an odd height lacks is
+    /// zero.
     fn prepare(&self, kept: usize, work: &mut Workspace) -> usize {
         assert!((1..=self.half_columns()).contains(&kept), "the columns of half a spectrum");
-        // An odd distance: with a power of two all rows would contend for a few places of the cache.
+        // An odd distance: with a power of two all rows would contend for a few places of the
+        // cache.
         let stride = kept | 1;
         let zero = Complex64::default();
         work.rows.resize(stride * self.height.next_multiple_of(2), zero);

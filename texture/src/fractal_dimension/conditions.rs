@@ -1,25 +1,29 @@
 //! The document's input conditions: what a picture must be for its dimension to mean roughness.
 //!
-//! Thesis §6.2 asks for homogeneity, one colour, no repeated pattern and no preferred direction, and gives no
-//! test for any. Ours compare directions and places by the mean absolute second difference over two texels, which a
-//! slow tilt does not move. Limits stand above the largest value on 90 exact Brownian surfaces (256², D 2.1–2.9), where all
-//! conditions hold by construction.
+//! Thesis §6.2 asks for homogeneity, one colour, no repeated pattern and no preferred direction,
+//! and gives no test for any. Ours compare directions and places by the mean absolute second
+//! difference over two texels, which a slow tilt does not move. Limits stand above the largest
+//! value on 90 exact Brownian surfaces (256², D 2.1–2.9), where all conditions hold by
+//! construction.
 
 use super::local::local_map;
 use super::transect::Transects;
 use crate::raster::Raster;
 use serde::Serialize;
 
-/// Largest ratio of the mean second differences along two perpendicular directions (Brownian: 1.03).
+/// Largest ratio of the mean second differences along two perpendicular directions (Brownian:
+/// 1.03).
 pub const DIRECTION_LIMIT: f64 = 1.15;
 
 /// Largest difference of the Hurst index between rows and columns (Brownian: 0.13).
 pub const DIRECTION_HURST_LIMIT: f64 = 0.15;
 
-/// Largest ratio of the activity of the places at the upper and the lower quartile (Brownian: 1.08).
+/// Largest ratio of the activity of the places at the upper and the lower quartile (Brownian:
+/// 1.08).
 pub const PLACE_LIMIT: f64 = 1.3;
 
-/// Largest standard deviation of the dimension over windows of a quarter of the picture (Brownian: 0.05).
+/// Largest standard deviation of the dimension over windows of a quarter of the picture (Brownian:
+/// 0.05).
 pub const PLACE_DIMENSION_LIMIT: f64 = 0.1;
 
 /// Largest rms of the colour differences over the rms of the grey values.
@@ -39,10 +43,11 @@ pub enum Condition {
     Inhomogeneous(f64),
     /// The dimension itself changes from place to place: its standard deviation.
     InhomogeneousDimension(f64),
-    /// Madogram and second differences give dimensions this far apart: blur, edges or noise at the scale
-    /// of a few texels, where a Brownian surface would look the same at all of them.
+    /// Madogram and second differences give dimensions this far apart: blur, edges or noise at the
+    /// scale of a few texels, where a Brownian surface would look the same at all of them.
     NotSelfSimilar(f64),
-    /// Colour carries information that grey does not: rms of the colour differences over that of grey.
+    /// Colour carries information that grey does not: rms of the colour differences over that of
+    /// grey.
     Coloured(f64),
 }
 
@@ -121,8 +126,9 @@ pub fn conditions(picture: &Raster, along: &Transects) -> Vec<Condition> {
     broken
 }
 
-/// Rms of red − grey and blue − grey about their means over the rms of grey about its mean, with grey the mean of
-/// the three. An even tint gives 0. Above [`COLOUR_LIMIT`] the picture is coloured.
+/// Rms of red − grey and blue − grey about their means over the rms of grey about its mean, with
+/// grey the mean of the three. An even tint gives 0. Above [`COLOUR_LIMIT`] the picture is
+/// coloured.
 #[must_use]
 pub fn colour_fraction(red: &Raster, green: &Raster, blue: &Raster) -> f64 {
     let mut sums = ColourSums::default();
@@ -169,7 +175,8 @@ fn second_difference(picture: &Raster, x: usize, y: usize, direction: (isize, is
     (value(step) - 2.0 * value(0) + value(-step)).abs()
 }
 
-/// Largest ratio, either way, of the mean second differences along rows and columns and along both diagonals.
+/// Largest ratio, either way, of the mean second differences along rows and columns and along both
+/// diagonals.
 fn direction_ratio(picture: &Raster) -> f64 {
     const DIRECTIONS: [(isize, isize); 4] = [(2, 0), (0, 2), (2, 2), (-2, 2)];
     let mut sums = [0.0_f64; 4];
@@ -200,7 +207,8 @@ fn place_ratio(picture: &Raster) -> f64 {
     activity[3 * PLACES * PLACES / 4] / activity[PLACES * PLACES / 4]
 }
 
-/// Standard deviation of the dimension over windows of a quarter of the picture that do not overlap.
+/// Standard deviation of the dimension over windows of a quarter of the picture that do not
+/// overlap.
 fn dimension_spread(picture: &Raster) -> f64 {
     let window = picture.width.min(picture.height) / 4;
     let Ok(map) = local_map(picture, window, window) else { return 0.0 };

@@ -1,9 +1,10 @@
 //! Box, information and correlation dimension: the relief's columns cut into grid cubes.
 //!
-//! A grey value is the height of a cuboid on its texel (thesis §6.2). The relief is then closed: a texel's column has a top and walls
-//! down to its lower neighbours, and its neighbours' walls stand on its border. With p_i the share of cube i in all
-//! (column, cube) pairs that touch, over the touched cubes of side δ: D_B = slope of ln N, D_I of −Σ p ln p, D_C of −ln Σ p², each
-//! against ln 1/δ (thesis Def. 6.4; lemma 6.1 lost the logarithm before N in print).
+//! A grey value is the height of a cuboid on its texel (thesis §6.2). The relief is then closed: a
+//! texel's column has a top and walls down to its lower neighbours, and its neighbours' walls stand
+//! on its border. With p_i the share of cube i in all (column, cube) pairs that touch, over the
+//! touched cubes of side δ: D_B = slope of ln N, D_I of −Σ p ln p, D_C of −ln Σ p², each against ln
+//! 1/δ (thesis Def. 6.4; lemma 6.1 lost the logarithm before N in print).
 //!
 //! | symbol | here |
 //! |---|---|
@@ -11,12 +12,14 @@
 //! | cuboid's walls | [`Columns`]: from the lowest to the highest of the texel and its four neighbours |
 //! | p_i | columns in a cube over all such pairs |
 //!
-//! The document is silent about the vertical unit and the sides of its cubes. Ours makes the range of heights a quarter of the
-//! shorter side, so that the estimates depend neither on contrast nor on the unit of height. The range was swept from an eighth
-//! to twice the side at 256², with thirteen sets of sides: a quarter and 1 to 64 texels come nearest to the document's table, and as
-//! there the three then agree with each other and with those of 130, 185 and 235 texels. `analysis_table cubes` prints both tables.
-//! (Counting the tops alone, without walls, a rough surface has fewer points than small cubes: D_B stayed at 1.97, 1.99, 1.93 where
-//! the document has 2.22, 2.36, 2.44.)
+//! The document is silent about the vertical unit and the sides of its cubes. Ours makes the range
+//! of heights a quarter of the shorter side, so that the estimates depend neither on contrast nor
+//! on the unit of height. The range was swept from an eighth to twice the side at 256², with
+//! thirteen sets of sides: a quarter and 1 to 64 texels come nearest to the document's table, and
+//! as there the three then agree with each other and with those of 130, 185 and 235 texels.
+//! `analysis_table cubes` prints both tables. (Counting the tops alone, without walls, a rough
+//! surface has fewer points than small cubes: D_B stayed at 1.97, 1.99, 1.93 where the document has
+//! 2.22, 2.36, 2.44.)
 
 use super::{DimensionError, check, slope};
 use crate::raster::Raster;
@@ -41,8 +44,8 @@ pub struct CubeDimensions {
     pub correlation: f64,
 }
 
-/// Box, information and correlation dimension of a picture. Where cubes of one side leave a strip of texels, their
-/// numbers are scaled to the whole picture.
+/// Box, information and correlation dimension of a picture. Where cubes of one side leave a strip
+/// of texels, their numbers are scaled to the whole picture.
 ///
 /// # Errors
 /// See [`DimensionError`].
@@ -73,7 +76,8 @@ pub fn cube_dimensions(picture: &Raster) -> Result<CubeDimensions, DimensionErro
     })
 }
 
-/// The heights that each texel's column and the walls on its border take, in whole units, both ends included.
+/// The heights that each texel's column and the walls on its border take, in whole units, both ends
+/// included.
 struct Columns {
     width: usize,
     height: usize,
@@ -151,7 +155,8 @@ mod tests {
 
     #[test]
     fn a_plane_has_dimension_two_by_all_three_counts() {
-        // Its steps' walls are touched from both sides, which the smallest cubes notice: 2.071 by box counting, 2.092 by information.
+        // Its steps' walls are touched from both sides, which the smallest cubes notice: 2.071 by
+        // box counting, 2.092 by information.
         let plane = Raster::from_fn(256, 256, |x, _| x as f64);
         let found = cube_dimensions(&plane).unwrap();
         for d in [found.box_counting, found.information, found.correlation] {

@@ -1,8 +1,9 @@
 //! A map of the dimension, place by place: the roughness map of a relief.
 //!
-//! In a square window the madograms of both directions are sums, V_x(1), V_x(2), V_y(1), V_y(2), taken from summed-area
-//! tables, so that the map costs the same for any window; D = 3 − ½ log₂(V_x(2)/V_x(1) · V_y(2)/V_y(1)).
-//! The error falls with the window: 0.03 at 32², 0.02 at 64² (rms, exact Brownian surfaces, 256²).
+//! In a square window the madograms of both directions are sums, V_x(1), V_x(2), V_y(1), V_y(2),
+//! taken from summed-area tables, so that the map costs the same for any window; D = 3 − ½
+//! log₂(V_x(2)/V_x(1) · V_y(2)/V_y(1)). The error falls with the window: 0.03 at 32², 0.02 at 64²
+//! (rms, exact Brownian surfaces, 256²).
 
 use super::{DimensionError, check};
 use crate::raster::Raster;
@@ -30,8 +31,8 @@ impl LocalMap {
 /// Dimension in windows of `window` texels every `stride` texels.
 ///
 /// # Errors
-/// See [`DimensionError`]; [`DimensionError::TooSmall`] also if `window` is less than 8, larger than
-/// the picture, or `stride` is 0.
+/// See [`DimensionError`]; [`DimensionError::TooSmall`] also if `window` is less than 8, larger
+/// than the picture, or `stride` is 0.
 pub fn local_map(picture: &Raster, window: usize, stride: usize) -> Result<LocalMap, DimensionError> {
     check(picture)?;
     let (width, height) = (picture.width, picture.height);

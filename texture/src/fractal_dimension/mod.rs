@@ -10,15 +10,15 @@
 //! | probability D_P (Voss) | surface points in the cube of side L ∈ {3, 5, 7, 9, 13, 17} round each point | `probability` |
 //! | recommended | height differences along every row and column, and their median | `transect` |
 //!
-//! The dimension becomes the roughness R of the engine's micro-noise in closed form, exact for ideal
-//! fractional Brownian surfaces: H = 3 − D, profile power spectrum 1/f^α with α = 2H + 1 = 7 − 2D, and
-//! Hasti's α = 2.5 − 1.5 R gives R = (D − 2.25)/0.75, clamped to 0–1 ([`roughness`]).
+//! The dimension becomes the roughness R of the engine's micro-noise in closed form, exact for
+//! ideal fractional Brownian surfaces: H = 3 − D, profile power spectrum 1/f^α with α = 2H + 1 = 7
+//! − 2D, and Hasti's α = 2.5 − 1.5 R gives R = (D − 2.25)/0.75, clamped to 0–1 ([`roughness`]).
 //!
-//! The document is silent about the vertical scale of the cubes, and it decides everything; each file
-//! says what we chose and what it changed. Measured on exact Brownian surfaces (256 × 256, D 2.1–2.9,
-//! `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.005 on the mean,
-//! the probability dimension by 0.04, the grid cubes by 0.15 because they saturate as they do in the
-//! document's own table near 2.44).
+//! The document is silent about the vertical scale of the cubes, and it decides everything; each
+//! file says what we chose and what it changed. Measured on exact Brownian surfaces (256 × 256, D
+//! 2.1–2.9, `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.005
+//! on the mean, the probability dimension by 0.04, the grid cubes by 0.15 because they saturate as
+//! they do in the document's own table near 2.44).
 
 mod conditions;
 mod grid_cubes;
@@ -97,8 +97,9 @@ pub struct DimensionReport {
 }
 
 /// All five estimates and the input conditions of one picture; the dimension does not depend on the
-/// unit of height. Symmetry is judged by `symmetry::find_lattice`, which costs more than everything here, so
-/// the caller adds [`Condition::Symmetric`] if it wants it; [`Condition::Coloured`] needs the colours.
+/// unit of height. Symmetry is judged by `symmetry::find_lattice`, which costs more than everything
+/// here, so the caller adds [`Condition::Symmetric`] if it wants it; [`Condition::Coloured`] needs
+/// the colours.
 ///
 /// # Errors
 /// See [`DimensionError`].

@@ -1,20 +1,20 @@
 //! Probability dimension after Voss: how many points the cube round each surface point holds.
 //!
-//! With P(m, L) the chance that the cube of side L centred on a surface point holds m points,
-//! N(L) = Σ_m P(m, L)/m, which is the mean of 1/m over the points, and D_P = −slope of ln N against ln L (thesis
-//! Def. 6.5).
+//! With P(m, L) the chance that the cube of side L centred on a surface point holds m points, N(L)
+//! = Σ_m P(m, L)/m, which is the mean of 1/m over the points, and D_P = −slope of ln N against ln L
+//! (thesis Def. 6.5).
 //!
 //! | symbol | here |
 //! |---|---|
 //! | L | [`PROBABILITY_SIDES`], texels |
 //! | m | points within (L − 1)/2 texels along x and y and (L − 1)/2 height units |
 //!
-//! **Changed:** with the document's 256 levels on 256 texels D_P *falls* above D ≈ 2.5 (mean absolute
-//! error 0.27). Scaling the heights so that the rms difference over `SCALE_LAG` texels is
-//! `SCALE_RMS` units makes it monotone as the document claims (0.037). The scale was swept on exact Brownian
-//! surfaces, D 2.1–2.9, 256²: error 0.11 at 5 units, 0.065 at 6, 0.037 at 7, 0.05 at 8.5 (where it falls again
-//! above D = 2.8), 0.08 at 10. Points nearer than 8 texels to the border are no centres, so that all
-//! sides see the same ones.
+//! **Changed:** with the document's 256 levels on 256 texels D_P *falls* above D ≈ 2.5 (mean
+//! absolute error 0.27). Scaling the heights so that the rms difference over `SCALE_LAG` texels is
+//! `SCALE_RMS` units makes it monotone as the document claims (0.037). The scale was swept on exact
+//! Brownian surfaces, D 2.1–2.9, 256²: error 0.11 at 5 units, 0.065 at 6, 0.037 at 7, 0.05 at 8.5
+//! (where it falls again above D = 2.8), 0.08 at 10. Points nearer than 8 texels to the border are
+//! no centres, so that all sides see the same ones.
 
 use super::{DimensionError, check, slope};
 use crate::raster::Raster;
@@ -31,7 +31,8 @@ const SCALE_RMS: f64 = 7.0;
 /// Half the largest cube: centres keep this distance from the border.
 const MARGIN: usize = 8;
 
-/// Largest number of centres: of larger pictures only every second, third, … row has some, so that no more than this many points are centres.
+/// Largest number of centres: of larger pictures only every second, third, … row has some, so that
+/// no more than this many points are centres.
 const MOST_CENTRES: usize = 1 << 20;
 
 /// Probability dimension D_P of a picture.
@@ -46,7 +47,8 @@ pub fn probability_dimension(picture: &Raster) -> Result<f64, DimensionError> {
     }
     let low = picture.range().0;
     let scale = SCALE_RMS / rms;
-    // f32 halves the time of the 622 comparisons a point; only ties at a cube's very face could notice.
+    // f32 halves the time of the 622 comparisons a point; only ties at a cube's very face could
+    // notice.
     let heights: Vec<f32> = picture.values.iter().map(|&v| ((v - low) * scale) as f32).collect();
     let line = PROBABILITY_SIDES.map(|side| {
         let cubes = mean_reciprocal_count(&heights, picture.width, picture.height, side / 2);

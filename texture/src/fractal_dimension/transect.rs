@@ -1,18 +1,21 @@
-//! The recommended estimator: height differences along every row and column, and the median of them.
+//! The recommended estimator: height differences along every row and column, and the median of
+//! them.
 //!
 //! Two looks at the same transects (Gneiting et al. 2012, "transect variation"), per direction:
 //!
 //! 1. *Madogram.* V(k) = mean |h(i + k) − h(i)| grows as k^H, so H₁ = median log₂ V(2)/V(1).
-//! 2. *Second differences.* W(k) = median over transects of mean (h(i + k) − 2h(i) + h(i − k))² grows as
-//!    k^2H; H₂ is half the weighted slope of ln(W(k) − q²/2) against ln k, k ∈ {1, 2, 4, 8}.
+//! 2. *Second differences.* W(k) = median over transects of mean (h(i + k) − 2h(i) + h(i − k))²
+//!    grows as k^2H; H₂ is half the weighted slope of ln(W(k) − q²/2) against ln k, k ∈ {1, 2, 4,
+//!    8}.
 //!
-//! The first is unmoved by 8-bit maps (rounding two heights at random phase leaves their mean absolute difference as it
-//! was), but above H ≈ 0.7 one surface's madogram wanders with its slow tilt: mean error 0.034 at
-//! D = 2.1. Second differences do not see the tilt, but rounding to steps of q adds q²/2 to each W, which buries
-//! the short lags of smooth 8-bit maps. We subtract it, with q the smallest step between neighbours, and weight each lag by
-//! (signal/total)²/k², about the inverse of its variance. The second look is taken where both agree, as they do
-//! on every Brownian surface; on a picture that is not Brownian at these scales (blur, edges) the
-//! madogram, which is harder to mislead, stands.
+//! The first is unmoved by 8-bit maps (rounding two heights at random phase leaves their mean
+//! absolute difference as it was), but above H ≈ 0.7 one surface's madogram wanders with its slow
+//! tilt: mean error 0.034 at D = 2.1. Second differences do not see the tilt, but rounding to steps
+//! of q adds q²/2 to each W, which buries the short lags of smooth 8-bit maps. We subtract it, with
+//! q the smallest step between neighbours, and weight each lag by (signal/total)²/k², about the
+//! inverse of its variance. The second look is taken where both agree, as they do on every Brownian
+//! surface; on a picture that is not Brownian at these scales (blur, edges) the madogram, which is
+//! harder to mislead, stands.
 //!
 //! | symbol | here |
 //! |---|---|
@@ -20,7 +23,8 @@
 //! | D from H₁ | [`Transects::madogram_dimension`] |
 //! | D to use | [`Transects::dimension`] |
 //!
-//! Measured, exact Brownian surfaces 256², D 2.1–2.9: mean absolute error 0.010 (madogram alone) → 0.005 (8 and 16 bits).
+//! Measured, exact Brownian surfaces 256², D 2.1–2.9: mean absolute error 0.010 (madogram alone) →
+//! 0.005 (8 and 16 bits).
 
 use super::{DimensionError, check};
 use crate::raster::Raster;
@@ -28,11 +32,12 @@ use crate::raster::Raster;
 /// Lags of the second differences, texels.
 const LAGS: [usize; 4] = [1, 2, 4, 8];
 
-/// Least share of the signal in W(k) for a lag to count: below it the noise of rounding is no longer known well enough.
+/// Least share of the signal in W(k) for a lag to count: below it the noise of rounding is no
+/// longer known well enough.
 const LEAST_SIGNAL: f64 = 0.2;
 
-/// Largest difference of the two estimates before the picture counts as not Brownian: above the largest
-/// difference on 180 exact surfaces, 0.07 at D = 2.1.
+/// Largest difference of the two estimates before the picture counts as not Brownian: above the
+/// largest difference on 180 exact surfaces, 0.07 at D = 2.1.
 const AGREEMENT: f64 = 0.15;
 
 /// Estimate from the transects of a picture.
@@ -51,7 +56,8 @@ pub struct Transects {
 }
 
 impl Transects {
-    /// Tests whether the two estimates contradict each other: the relief is not Brownian at scales of a few texels.
+    /// Tests whether the two estimates contradict each other: the relief is not Brownian at scales
+    /// of a few texels.
     #[must_use]
     pub fn disagree(&self) -> bool {
         self.second_dimension.is_none_or(|d| (d - self.madogram_dimension).abs() > AGREEMENT)
@@ -61,7 +67,8 @@ impl Transects {
 /// Dimension of a picture from its rows and columns. Transects without relief count for nothing.
 ///
 /// # Errors
-/// See [`DimensionError`]; [`DimensionError::Flat`] also if more than half of all transects have no relief.
+/// See [`DimensionError`]; [`DimensionError::Flat`] also if more than half of all transects have no
+/// relief.
 pub fn transects(picture: &Raster) -> Result<Transects, DimensionError> {
     check(picture)?;
     let turned = picture.transposed();
@@ -132,8 +139,8 @@ fn second_difference(heights: &[f64], lag: usize) -> f64 {
     mean_in_lanes(left, middle, right, square)
 }
 
-/// Mean of a term of three equally long slices, in eight sums side by side: one sum alone would wait for
-/// every addition.
+/// Mean of a term of three equally long slices, in eight sums side by side: one sum alone would
+/// wait for every addition.
 #[inline]
 fn mean_in_lanes(a: &[f64], b: &[f64], c: &[f64], term: impl Fn(f64, f64, f64) -> f64) -> f64 {
     const LANES: usize = 8;

@@ -13,9 +13,11 @@ use asperity_dsp::DesignError;
 const GAMMA: f64 = 2.2;
 /// Mean below which a picture's contrast is not raised further, of white: there it is the camera's.
 const DARKEST_MEAN: f64 = 0.05;
-/// Mean of stored values at which a step of brightness counts as its share of the mean. Source: ours: a well exposed picture.
+/// Mean of stored values at which a step of brightness counts as its share of the mean. Source:
+/// ours: a well exposed picture.
 const USUAL_MEAN: f64 = 0.4;
-/// Relief over the shorter side from which a found light is not believed. Source: ours; the map sets stay below 0.08.
+/// Relief over the shorter side from which a found light is not believed. Source: ours; the map
+/// sets stay below 0.08.
 const MOST_RELIEF: f64 = 0.1;
 /// Largest unexplained part of the image under a found light, over its standard deviation.
 const MOST_UNEXPLAINED: f64 = 0.7;
@@ -23,7 +25,8 @@ const MOST_UNEXPLAINED: f64 = 0.7;
 /// Why heights were not found as the light seemed to allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fallback {
-    /// The told light comes from the viewer's direction, and there is no flat ground; its slant, radians.
+    /// The told light comes from the viewer's direction, and there is no flat ground; its slant,
+    /// radians.
     FrontalLight(f64),
     /// A light was found, but the relief it gives is this large over the shorter side.
     Implausible(f64),
@@ -61,8 +64,8 @@ pub(super) struct Found {
     pub fallback: Option<Fallback>,
 }
 
-/// Heights of a picture of stored values; which way up they are is asked of the `whole` photograph, because a mean cell has its
-/// pattern's skewness and no shadows.
+/// Heights of a picture of stored values; which way up they are is asked of the `whole` photograph,
+/// because a mean cell has its pattern's skewness and no shadows.
 pub(super) fn heights_of(
     picture: &Raster,
     whole: &Raster,
@@ -152,17 +155,19 @@ fn by_shading(
 
 /// Brightness as the light that fell, mean 1: proportional to the contrast of stored values.
 ///
-/// A step over the mean would be right for a matt surface. Gloss adds as much light to a dark surface as to a bright one, so steps on dark
-/// surfaces are divided by the geometric mean of theirs and a usual mean: on 15 public map sets the levels are then 4.4 dB off (median; 5.1
-/// by the mean alone) and rank with the mapped ones at 0.31–0.55 (0.16–0.58; undivided 0.17–0.29).
+/// A step over the mean would be right for a matt surface. Gloss adds as much light to a dark
+/// surface as to a bright one, so steps on dark surfaces are divided by the geometric mean of
+/// theirs and a usual mean: on 15 public map sets the levels are then 4.4 dB off (median; 5.1 by
+/// the mean alone) and rank with the mapped ones at 0.31–0.55 (0.16–0.58; undivided 0.17–0.29).
 pub(super) fn contrast(picture: &Raster) -> Raster {
     let mean = picture.mean();
     let gain = GAMMA / (mean.max(DARKEST_MEAN) * USUAL_MEAN).sqrt();
     picture.map(|v| 1.0 + gain * (v - mean))
 }
 
-/// Heights without what is longer, along the light, than a quarter of the picture. Shading shows slopes along the light
-/// only; across it, and over long ways, its integral is noise: streaks and domes.
+/// Heights without what is longer, along the light, than a quarter of the picture. Shading shows
+/// slopes along the light only; across it, and over long ways, its integral is noise: streaks and
+/// domes.
 fn without_streaks(heights: &Raster, light: Light) -> Raster {
     let (w, h) = (heights.width, heights.height);
     let [sx, sy, _] = light.direction();

@@ -5,7 +5,8 @@ use crate::raster::Raster;
 use crate::shape_from_shading::Method;
 use asperity_dsp::DesignError;
 
-/// Size of a texel when nobody says: 40 mm over 256 texels (document 002, document 004 §8.3: 40 mm).
+/// Size of a texel when nobody says: 40 mm over 256 texels (document 002, document 004 §8.3: 40
+/// mm).
 pub const TEXEL_M: f64 = 0.04 / 256.0;
 
 /// Facts given about a photograph.
@@ -21,13 +22,14 @@ pub struct PhotoOptions {
     pub texel_m: f64,
     /// Height from the lowest to the highest point, m; `None`: what contrast and texel size give.
     pub relief_m: Option<f64>,
-    /// Factor on the heights that contrast gives, for this camera and light ([`super::calibration`]); does not matter to a
-    /// relief that is told.
+    /// Factor on the heights that contrast gives, for this camera and light
+    /// ([`super::calibration`]); does not matter to a relief that is told.
     pub calibration: f64,
     /// Factor on the heights, whatever gave them.
     pub exaggeration: f64,
-    /// The coarsest divisor of a JPEG's slow waves of brightness, levels of 255, over the pixels that a texel's side has; 0 where the
-    /// picture was none. What such a file cannot hold is no relief.
+    /// The coarsest divisor of a JPEG's slow waves of brightness, levels of 255, over the pixels
+    /// that a texel's side has; 0 where the picture was none. What such a file cannot hold is no
+    /// relief.
     pub jpeg_divisor: f64,
 }
 

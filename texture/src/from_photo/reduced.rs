@@ -5,7 +5,8 @@ use crate::raster::Raster;
 /// Largest picture that is worked on, texels: larger ones are reduced ([`reduced`]).
 pub const MOST_TEXELS: usize = 1 << 22;
 
-/// A picture of at most [`MOST_TEXELS`] and how many of its texels are one of the result along a side: means of n × n.
+/// A picture of at most [`MOST_TEXELS`] and how many of its texels are one of the result along a
+/// side: means of n × n.
 #[must_use]
 pub fn reduced(picture: Raster) -> (Raster, usize) {
     let n = Raster::reduction(picture.width, picture.height, MOST_TEXELS);

@@ -1,11 +1,13 @@
-//! Residual of a pattern, the part that does not repeat, as heights: its fine waves stay in the map, its law goes on below the map's texels.
+//! Residual of a pattern, the part that does not repeat, as heights: its fine waves stay in the
+//! map, its law goes on below the map's texels.
 //!
 //! ```text
 //! Z(ω) += Z_r(ω) g(λ)        g = 1 up to FINE_PX[0], cos² in octaves down to 0 at FINE_PX[1]
 //! ```
-//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::dark_is_deep`]). A mean cell has lost the grain that lies
-//! on the pattern, and the engine's overlay begins at two texels only: without g nothing at all would be felt between two texels and
-//! the cell. Longer waves of the residual are dirt, wear and uneven light, which is what averaging is for.
+//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::dark_is_deep`]). A mean
+//! cell has lost the grain that lies on the pattern, and the engine's overlay begins at two texels
+//! only: without g nothing at all would be felt between two texels and the cell. Longer waves of
+//! the residual are dirt, wear and uneven light, which is what averaging is for.
 
 use super::heights::contrast;
 use crate::camera_noise::without_noise_and_steps;
@@ -14,8 +16,8 @@ use crate::raster::Raster;
 use crate::waves::Waves;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Wavelengths up to which the residual stays, and from which nothing of it does, texels. Source: ours; the first is the longest wave
-/// of the plain contrast that ranks fine levels.
+/// Wavelengths up to which the residual stays, and from which nothing of it does, texels. Source:
+/// ours; the first is the longest wave of the plain contrast that ranks fine levels.
 const FINE_PX: [f64; 2] = [8.0, 16.0];
 
 /// Heights of what does not repeat, texels, by its contrast against the whole picture.

@@ -1,17 +1,20 @@
 //! Sign of the relief: whether bright is high, and how sure a picture makes of it.
 //!
-//! Brightness alone does not tell hills from hollows. Occlusion and cast shadows give a few places much less light than the
-//! rest, but nothing gives a few places much more of it, so a tail towards dark speaks for dark is deep; a tail
-//! towards bright is paint, wear or gloss and speaks for nothing:
+//! Brightness alone does not tell hills from hollows. Occlusion and cast shadows give a few places
+//! much less light than the rest, but nothing gives a few places much more of it, so a tail towards
+//! dark speaks for dark is deep; a tail towards bright is paint, wear or gloss and speaks for
+//! nothing:
 //! ```text
 //! confidence = ¼ − ¼ · skewness, 0.1 … 0.95        decided from 0.5, that is from a skewness of −1
 //! ```
-//! Skewness is that of the picture between 4 texels and a quarter of its side, and waves of 2 to 8 texels must have a tail as well
-//! (−0.7 or less): shadows lie in narrow places, while panels of two colours and holes in a bright ceiling are skewed as a whole and not there.
-//! Measured on 37 public map sets (colour against displacement, light taken out by their makers): a skewness of −1 alone decided 4, with
-//! correlations of 0.35, 0.06, −0.47 and −0.59; with the fine waves none is decided, and dark is high (below −0.1) in 13 of them. Neither a weaker tail,
-//! nor curvature, nor colour tells which. Without such a tail the sign is a
-//! guess, and called one. A light that was told decides; one that was found is taken to come from above, a guess as well.
+//! Skewness is that of the picture between 4 texels and a quarter of its side, and waves of 2 to 8
+//! texels must have a tail as well (−0.7 or less): shadows lie in narrow places, while panels of
+//! two colours and holes in a bright ceiling are skewed as a whole and not there. Measured on 37
+//! public map sets (colour against displacement, light taken out by their makers): a skewness of −1
+//! alone decided 4, with correlations of 0.35, 0.06, −0.47 and −0.59; with the fine waves none is
+//! decided, and dark is high (below −0.1) in 13 of them. Neither a weaker tail, nor curvature, nor
+//! colour tells which. Without such a tail the sign is a guess, and called one. A light that was
+//! told decides; one that was found is taken to come from above, a guess as well.
 
 use crate::light::{band, skewness};
 use crate::raster::Raster;
@@ -22,8 +25,8 @@ pub const DECIDED: f64 = 0.5;
 const GUESS: f64 = 0.45;
 /// Waves that shadows must show in as well, texels: cracks and pits are narrow.
 const FINE_PX: [f64; 2] = [2.0, 8.0];
-/// Skewness of them from which they show a tail. Source: ours; −1.3 for grooves of two texels, −0.46, 0.0, −0.37 and 0.38 in the four
-/// public sets that are skewed as a whole.
+/// Skewness of them from which they show a tail. Source: ours; −1.3 for grooves of two texels,
+/// −0.46, 0.0, −0.37 and 0.38 in the four public sets that are skewed as a whole.
 const FINE_TAIL: f64 = -0.7;
 /// Confidence of a light that was found: which end of its axis it comes from is custom.
 pub const FOUND_LIGHT: f64 = 0.4;
@@ -48,7 +51,8 @@ impl Sign {
         Self { bright_is_deep: false, confidence: FOUND_LIGHT }
     }
 
-    /// Dark is deep, as sure as the picture's shadows say: a guess unless they show in fine waves too.
+    /// Dark is deep, as sure as the picture's shadows say: a guess unless they show in fine waves
+    /// too.
     pub(crate) fn of_brightness(picture: &Raster) -> Self {
         let longest_px = (picture.width.min(picture.height) as f64 / 4.0).max(8.0);
         let tail = skewness(&band(picture, [4.0, longest_px]));

@@ -1,8 +1,10 @@
-//! Rings of frequency and sectors of direction of a spectrum, and what a field of slopes shows in it.
+//! Rings of frequency and sectors of direction of a spectrum, and what a field of slopes shows in
+//! it.
 
 use std::f64::consts::PI;
 
-/// Sectors of directions whose power is measured apart. Ours: 4 to 24 differ by less than a tenth of the error.
+/// Sectors of directions whose power is measured apart. Ours: 4 to 24 differ by less than a tenth
+/// of the error.
 pub(super) const SECTORS: usize = 8;
 /// |D|² below which a derivative sees nothing.
 pub(super) const UNSEEN: f64 = 1e-9;
@@ -31,7 +33,8 @@ pub(super) struct Bands {
 }
 
 impl Bands {
-    /// Bands of a spectrum stored column by column, from its frequencies along u and v, radians per texel, and the rings' width.
+    /// Bands of a spectrum stored column by column, from its frequencies along u and v, radians per
+    /// texel, and the rings' width.
     pub fn new(along_u: &[f64], along_v: &[f64], width: f64) -> Self {
         let places = || along_u.iter().flat_map(|&wx| along_v.iter().map(move |&wy| (wx, wy)));
         let ring: Vec<u32> = places().map(|(wx, wy)| (wx.hypot(wy) / width).round() as u32).collect();
@@ -64,7 +67,8 @@ impl Bands {
 
 /// Which sector of directions a frequency lies in; k and −k lie in the same.
 fn sector(wx: f64, wy: f64) -> u8 {
-    // The sectors' middles, not their edges, lie on the axes, and the smallest step decides no sector.
+    // The sectors' middles, not their edges, lie on the axes, and the smallest step decides no
+    // sector.
     let turn = wy.atan2(wx).rem_euclid(PI) / PI * SECTORS as f64;
     (turn + 0.5) as u8 % SECTORS as u8
 }

@@ -1,8 +1,9 @@
 //! Waves that a map has and its derivative could not have seen.
 //!
-//! Slopes taken by a derivative carry |D|² S + N of a surface's power S. Where the derivative is nearly blind they hold little but noise,
-//! unless the surface is stronger there than at any longer wave. Slopes that hold more were not made by it: normals that were made otherwise and
-//! resized, mostly, and dividing them by the blind derivative would raise short waves above all others.
+//! Slopes taken by a derivative carry |D|² S + N of a surface's power S. Where the derivative is
+//! nearly blind they hold little but noise, unless the surface is stronger there than at any longer
+//! wave. Slopes that hold more were not made by it: normals that were made otherwise and resized,
+//! mostly, and dividing them by the blind derivative would raise short waves above all others.
 //! ```text
 //! blind: |D|² < ⅒ ω² in the upper half of the spectrum      ruled out: Σ (|P|² + |Q|²) ≫ Σ (|D|² S + 2 N)
 //! ```
@@ -15,11 +16,13 @@ use std::f64::consts::FRAC_PI_2;
 
 /// |D|²/ω² below which a derivative is nearly blind.
 const NEARLY_BLIND: f64 = 0.1;
-/// Power over what the derivative can leave of a surface, and noise, from which it did not make the slopes. Source: ours. Surfaces of other people's maps with
-/// slopes taken by Sobel leave 0.2–2.4, with slopes taken otherwise and halved 6–60.
+/// Power over what the derivative can leave of a surface, and noise, from which it did not make the
+/// slopes. Source: ours. Surfaces of other people's maps with slopes taken by Sobel leave 0.2–2.4,
+/// with slopes taken otherwise and halved 6–60.
 const TOO_MUCH: f64 = 4.0;
 
-/// Tests whether slopes of this power hold waves which the derivative would not have left in them. `noise` is that of one slope.
+/// Tests whether slopes of this power hold waves which the derivative would not have left in them.
+/// `noise` is that of one slope.
 pub(super) fn made_blind(
     derivative: Derivative,
     power: &[f64],
@@ -64,7 +67,8 @@ mod tests {
     use crate::fft2::angular_frequency;
     use std::f64::consts::TAU;
 
-    /// Power of slopes taken by `derivative` from a surface whose power falls with the square of frequency, as that of steep edges.
+    /// Power of slopes taken by `derivative` from a surface whose power falls with the square of
+    /// frequency, as that of steep edges.
     fn slopes_of(derivative: Derivative, n: usize, noise: f64) -> (Vec<f64>, Vec<f64>) {
         let frequencies: Vec<f64> = (0..n).map(|k| angular_frequency(k, n)).collect();
         let power = |place: usize| {

@@ -1,9 +1,10 @@
 //! Border terms of finite differences: their share of a field that does not tile.
 //!
-//! At the border a central difference
-//! of a mirrored image is half the difference to the only neighbour (mirrored beyond the last texel), or none (mirrored at the last
-//! texel). Converters take the one, the other, or the whole difference, which is twice the first. Which it was is read from the field, by regression of the border's
-//! slopes on those expected from the two next to them, 3/2 s₁ − 1/2 s₂.
+//! At the border a central difference of a mirrored image is half the difference to the only
+//! neighbour (mirrored beyond the last texel), or none (mirrored at the last texel). Converters
+//! take the one, the other, or the whole difference, which is twice the first. Which it was is read
+//! from the field, by regression of the border's slopes on those expected from the two next to
+//! them, 3/2 s₁ − 1/2 s₂.
 
 use super::Slopes;
 

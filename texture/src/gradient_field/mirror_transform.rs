@@ -1,10 +1,12 @@
-//! Fourier transforms of rectangles that go on mirrored, to twice their size without the work of four times as many numbers.
+//! Fourier transforms of rectangles that go on mirrored, to twice their size without the work of
+//! four times as many numbers.
 //!
 //! ```text
 //! C(k) = ½ e^(−iπk/period) Σ_j e(j) e^(−2πi jk/period)        e = the row and its mirror image, period long
 //! ```
-//! is Σ x(j) cos(2πk(j + ½)/period) for a row mirrored half a texel beyond its ends; mirrored at a texel, the half and the phase of half
-//! a texel fall away; mirrored with its sign turned, sines take the cosines' place. Two rows travel through one complex transform.
+//! is Σ x(j) cos(2πk(j + ½)/period) for a row mirrored half a texel beyond its ends; mirrored at a
+//! texel, the half and the phase of half a texel fall away; mirrored with its sign turned, sines
+//! take the cosines' place. Two rows travel through one complex transform.
 
 use crate::raster::Raster;
 use asperity_fft::num_complex::Complex64;

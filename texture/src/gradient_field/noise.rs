@@ -1,19 +1,23 @@
 //! The noise of slopes, read from what no surface has.
 //!
-//! What lies across D, |D_y P − D_x Q|²/|D|², is noise alone, and as much of it lies along D. Rounding is known beforehand
-//! ([`crate::normal_map`]) and alike at all frequencies: N is what rounding leaves, and never more than what lies across. The
-//! rounding of a pattern that repeats falls on few frequencies and is the stronger there: by Σ a² / 2 Σ a of the powers a across.
+//! What lies across D, |D_y P − D_x Q|²/|D|², is noise alone, and as much of it lies along D.
+//! Rounding is known beforehand ([`crate::normal_map`]) and alike at all frequencies: N is what
+//! rounding leaves, and never more than what lies across. The rounding of a pattern that repeats
+//! falls on few frequencies and is the stronger there: by Σ a² / 2 Σ a of the powers a across.
 //!
-//! More than rounding can leave lies across the slopes of a map that was resized or saved as JPEG. Such noise is coloured (JPEG keeps half as many
-//! texels of two of three colours, and rounds short waves the most), and its parts in both slopes are alike: where red and green lost their own short
-//! waves, both follow brightness, and what is left lies along D in one diagonal and across D in the other. Noise of a covariance C leaves nᵀ C n along a
-//! direction n, as much as lies across D a quarter turn away; noise that follows the surface's own waves lies in their sector. N of a sector's ring and its
-//! neighbours is the larger of both means, and Σ a² / 2 Σ a where it falls on few frequencies.
+//! More than rounding can leave lies across the slopes of a map that was resized or saved as JPEG.
+//! Such noise is coloured (JPEG keeps half as many texels of two of three colours, and rounds short
+//! waves the most), and its parts in both slopes are alike: where red and green lost their own
+//! short waves, both follow brightness, and what is left lies along D in one diagonal and across D
+//! in the other. Noise of a covariance C leaves nᵀ C n along a direction n, as much as lies across
+//! D a quarter turn away; noise that follows the surface's own waves lies in their sector. N of a
+//! sector's ring and its neighbours is the larger of both means, and Σ a² / 2 Σ a where it falls on
+//! few frequencies.
 
 use super::bands::{Bands, Seen, UNSEEN};
 
-/// Power of a single frequency, over that expected of its ring and the noise, from which it is a line of its own: noise reaches it once in
-/// e¹² frequencies.
+/// Power of a single frequency, over that expected of its ring and the noise, from which it is a
+/// line of its own: noise reaches it once in e¹² frequencies.
 pub(super) const LINE: f64 = 12.0;
 /// Power across D over that of rounding from which it is something else.
 const NOT_ROUNDING: f64 = 2.0;
@@ -47,7 +51,8 @@ impl Noise {
         let told = || seen.iter().skip(1).filter(|s| s.square >= UNSEEN).map(|s| s.across);
         let (count, sum, squares) = told().fold((0.0, 0.0, 0.0), |(n, s, q), a| (n + 1.0, s + a, q + a * a));
         let mean = most.min(sum / f64::max(count, 1.0));
-        // Squares have twice the mean's square where powers are those of noise: distributed exponentially.
+        // Squares have twice the mean's square where powers are those of noise: distributed
+        // exponentially.
         let gathered = if sum > 0.0 { (0.5 * squares / sum).max(mean) } else { mean };
         let rounding = Level { mean, gathered, is_rounding: true };
         let mut noise = Self {
@@ -78,15 +83,18 @@ impl Noise {
         self.levels[band].gathered
     }
 
-    /// Power taken off a line: rounding is known apart from the surface's own lines, other noise falls on them.
+    /// Power taken off a line: rounding is known apart from the surface's own lines, other noise
+    /// falls on them.
     pub fn of_line(&self, band: usize) -> f64 {
         let level = &self.levels[band];
         if level.is_rounding { level.mean } else { level.gathered }
     }
 
-    /// Largest addition of the noise to a band's Σ |D_x* P + D_y* Q|² beyond that of noise spread over all frequencies, from the band's
-    /// Σ |D|⁴ and the number of its frequencies: both standard deviations for many, an exponential's tail for few. Noise that is measured is known so well that
-    /// nothing is added, but for waves shorter than three texels, where a surface is the weakest: one standard deviation.
+    /// Largest addition of the noise to a band's Σ |D_x* P + D_y* Q|² beyond that of noise spread
+    /// over all frequencies, from the band's Σ |D|⁴ and the number of its frequencies: both
+    /// standard deviations for many, an exponential's tail for few. Noise that is measured is known
+    /// so well that nothing is added, but for waves shorter than three texels, where a surface is
+    /// the weakest: one standard deviation.
     pub fn excess(&self, band: usize, under: f64, places: f64) -> f64 {
         let Level { mean, gathered, is_rounding } = self.levels[band];
         let deviation = (mean * (2.0 * gathered - mean)).sqrt() - mean;
@@ -101,7 +109,8 @@ impl Noise {
     }
 }
 
-/// Power across D in each band or a quarter turn away, whichever is more, over so many neighbouring rings that there are enough frequencies.
+/// Power across D in each band or a quarter turn away, whichever is more, over so many neighbouring
+/// rings that there are enough frequencies.
 fn by_bands(bands: &Bands, seen: &[Seen]) -> Vec<Level> {
     let rings = bands.rings;
     // Count, Σ a and Σ a² of all rings of a sector below.
@@ -180,8 +189,8 @@ mod tests {
 
     #[test]
     fn noise_that_both_slopes_share_is_known_by_its_direction() {
-        // p = −q, as where JPEG left brightness alone: along D it has (D_x − D_y)²/|D|² of its power, across D the rest, which is
-        // nothing in one diagonal.
+        // p = −q, as where JPEG left brightness alone: along D it has (D_x − D_y)²/|D|² of its
+        // power, across D the rest, which is nothing in one diagonal.
         let n = 128;
         let frequencies: Vec<f64> = (0..n).map(|k| crate::fft2::angular_frequency(k, n)).collect();
         let bands = Bands::new(&frequencies, &frequencies, 0.05);

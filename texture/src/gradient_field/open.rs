@@ -1,8 +1,10 @@
 //! Slopes of a surface that does not tile, by the waves of its mirror image.
 //!
-//! A surface that goes on mirrored tiles, and differences of it are those of the map with their signs turned. Steps from texel to texel
-//! ([`super::steps`]) are such differences, which no wave escapes: true slopes are made into steps first. Central differences and Sobel's are mirrored
-//! as they are, borders as in [`super::border_share`]. In each case one transform solves the least squares exactly.
+//! A surface that goes on mirrored tiles, and differences of it are those of the map with their
+//! signs turned. Steps from texel to texel ([`super::steps`]) are such differences, which no wave
+//! escapes: true slopes are made into steps first. Central differences and Sobel's are mirrored as
+//! they are, borders as in [`super::border_share`]. In each case one transform solves the least
+//! squares exactly.
 
 use super::bands::{Bands, Seen};
 use super::border_share::BorderShare;
@@ -15,7 +17,8 @@ use super::{Derivative, Slopes};
 use crate::raster::Raster;
 use std::f64::consts::PI;
 
-/// Most that steps are raised where the slopes' integrals miss a part of a wave; what is raised rings at the borders.
+/// Most that steps are raised where the slopes' integrals miss a part of a wave; what is raised
+/// rings at the borders.
 const RAISED: f64 = 1.4;
 
 /// Waves of slopes or steps along u and v.
@@ -34,7 +37,8 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// Field of slopes taken by `derivative`; all that are neither central nor Sobel's are true slopes.
+    /// Field of slopes taken by `derivative`; all that are neither central nor Sobel's are true
+    /// slopes.
     pub fn of(field: &Slopes, derivative: Derivative) -> Self {
         let (width, height) = (field.along_u.width, field.along_u.height);
         let mut transform = MirrorTransform::default();
@@ -119,7 +123,8 @@ impl Open {
     }
 }
 
-/// Filter that makes steps of true slopes' integrals, and of slopes half way between true and central ones.
+/// Filter that makes steps of true slopes' integrals, and of slopes half way between true and
+/// central ones.
 fn raised(omega: f64, derivative: Derivative) -> f64 {
     let missed = steps::seen_inside(omega).max(1.0 / RAISED).recip();
     let taken = if derivative == Derivative::ExactOrCentral && omega > 0.0 {
@@ -147,14 +152,15 @@ fn halved_at_borders(field: &Slopes) -> [Raster; 2] {
     [p, q]
 }
 
-/// The surface that need not tile and has these slopes as nearly as possible, mean 0. A constant slope
-/// is kept: a plane comes out as a plane.
+/// The surface that need not tile and has these slopes as nearly as possible, mean 0. A constant
+/// slope is kept: a plane comes out as a plane.
 #[must_use]
 pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     integrate_open_rounded(field, derivative, f64::INFINITY)
 }
 
-/// Integral where the slopes have a noise: `noise` is the variance in each that rounding leaves at the most; what is more is measured.
+/// Integral where the slopes have a noise: `noise` is the variance in each that rounding leaves at
+/// the most; what is more is measured.
 #[must_use]
 pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
     Open::of(field, derivative).heights(derivative, noise, Walls::NONE)

@@ -29,7 +29,8 @@ fn unzip(image: &[Complex64], width: usize, height: usize) -> Slopes {
     }
 }
 
-/// Projects slopes onto the nearest ones of a surface that tiles, in place; the plans are made once.
+/// Projects slopes onto the nearest ones of a surface that tiles, in place; the plans are made
+/// once.
 #[derive(Debug)]
 pub struct Projection {
     fft: Fft2,

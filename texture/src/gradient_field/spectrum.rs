@@ -1,4 +1,5 @@
-//! A field of slopes by its waves, whether it tiles or not: transformed once, asked as often as it takes.
+//! A field of slopes by its waves, whether it tiles or not: transformed once, asked as often as it
+//! takes.
 
 use super::open::Open;
 use super::tiling::Tiling;
@@ -61,8 +62,9 @@ impl SlopeSpectrum {
         }
     }
 
-    /// The derivatives that may have made the slopes, the likeliest first, never none; and whether it leaves no more than rounding, without which nothing is certain.
-    /// `noise` is the variance that rounding leaves in each slope.
+    /// The derivatives that may have made the slopes, the likeliest first, never none; and whether
+    /// it leaves no more than rounding, without which nothing is certain. `noise` is the variance
+    /// that rounding leaves in each slope.
     #[must_use]
     pub fn possible_derivatives(&self, noise: f64) -> (Vec<Derivative>, bool) {
         match &self.waves {
@@ -71,8 +73,8 @@ impl SlopeSpectrum {
         }
     }
 
-    /// The surface with these slopes, mean 0; `noise` is the variance that rounding leaves in each at the most, `walls` what true slopes are
-    /// of.
+    /// The surface with these slopes, mean 0; `noise` is the variance that rounding leaves in each
+    /// at the most, `walls` what true slopes are of.
     #[must_use]
     pub fn heights(self, derivative: Derivative, noise: f64, walls: Walls) -> Raster {
         match self.waves {

@@ -1,7 +1,9 @@
-//! Steps from texel to texel of a surface whose true slopes are known at the texels: their integrals between them.
+//! Steps from texel to texel of a surface whose true slopes are known at the texels: their
+//! integrals between them.
 //!
-//! The polynomial through the slopes nearest to a step is integrated: six inside, four next to a border, and from one side at it. Over waves
-//! of ω radians a texel, such a step is smaller than the surface's by [`seen_inside`], 3 % at 4 texels and nearly all at 2.
+//! The polynomial through the slopes nearest to a step is integrated: six inside, four next to a
+//! border, and from one side at it. Over waves of ω radians a texel, such a step is smaller than
+//! the surface's by [`seen_inside`], 3 % at 4 texels and nearly all at 2.
 
 use crate::raster::Raster;
 

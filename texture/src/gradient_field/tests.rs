@@ -121,7 +121,8 @@ fn whatever_a_converter_did_at_the_borders_the_surface_comes_back() {
             assert!(worst(&made, &surface) < 1e-6, "{derivative:?} {share}: {}", worst(&made, &surface));
         }
     }
-    // Mirrored at the last texel: the differences there are 0, and no difference sees the wave of two texels.
+    // Mirrored at the last texel: the differences there are 0, and no difference sees the wave of
+    // two texels.
     let made = integrate_open(&shared(&surface, Derivative::Central, 0.0), Derivative::Central);
     assert!(worst(&made, &surface) < 1e-3, "{}", worst(&made, &surface));
 }

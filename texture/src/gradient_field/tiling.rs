@@ -89,8 +89,8 @@ impl Tiling {
     }
 }
 
-/// The surface that tiles whose slopes these are but for a noise, mean 0. `noise` is the variance in each that rounding leaves at the most; what is
-/// more is measured.
+/// The surface that tiles whose slopes these are but for a noise, mean 0. `noise` is the variance
+/// in each that rounding leaves at the most; what is more is measured.
 #[must_use]
 pub fn integrate_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
     Tiling::of(field).heights(derivative, noise, Walls::NONE)

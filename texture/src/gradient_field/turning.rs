@@ -1,11 +1,12 @@
 //! Curl of a slope field: tests integrability and identifies the derivative stencil.
 //!
-//! Only with the derivative that made the slopes is D_y P = D_x Q. What is left across D, |D_y P − D_x Q|²/|D|², is then the noise of
-//! the slopes, with any other derivative more. By how much more, in units of the noise, is the logarithm of the likelihood ratio
-//! of the two: a derivative is ruled out when that is above [`RULED_OUT`] and what it leaves exceeds what the best one leaves clearly.
-//! Corrugations, and waves as long along u as along v, leave nothing with any derivative: their slopes agree up to a
-//! factor, and their map is the same to the last bit. A derivative that is blind to waves which the map has is ruled out by [`super::blind`].
-//! Source of the tests: ours.
+//! Only with the derivative that made the slopes is D_y P = D_x Q. What is left across D, |D_y P −
+//! D_x Q|²/|D|², is then the noise of the slopes, with any other derivative more. By how much more,
+//! in units of the noise, is the logarithm of the likelihood ratio of the two: a derivative is
+//! ruled out when that is above [`RULED_OUT`] and what it leaves exceeds what the best one leaves
+//! clearly. Corrugations, and waves as long along u as along v, leave nothing with any derivative:
+//! their slopes agree up to a factor, and their map is the same to the last bit. A derivative that
+//! is blind to waves which the map has is ruled out by [`super::blind`]. Source of the tests: ours.
 
 use super::bands::Seen;
 use super::blind::made_blind;
@@ -18,23 +19,25 @@ use std::f64::consts::TAU;
 
 /// Power over that of the noise from which a frequency counts as signal.
 const CLEAR_OF_NOISE: f64 = 8.0;
-/// Logarithm of a likelihood ratio that rules a derivative out. Source: ours; over 19 kinds of surfaces the derivative that made
-/// a map came to 3.3 at the most, on waves of two directions.
+/// Logarithm of a likelihood ratio that rules a derivative out. Source: ours; over 19 kinds of
+/// surfaces the derivative that made a map came to 3.3 at the most, on waves of two directions.
 const RULED_OUT: f64 = 20.0;
-/// Highest frequency along either axis that a surface that does not tile is asked about, radians per texel: differences of eighth order are
-/// within 0.7 % of the true derivative there, those of neighbours 22 % below it.
+/// Highest frequency along either axis that a surface that does not tile is asked about, radians
+/// per texel: differences of eighth order are within 0.7 % of the true derivative there, those of
+/// neighbours 22 % below it.
 const HIGHEST_ASKED: f64 = 1.2;
 /// A derivative is only ruled out by one that leaves at most this fraction of what it leaves.
 const CLEARLY: f64 = 0.85;
 /// Limit where the best one leaves more than rounding: what is no rounding in a map made by others
-/// (resizing, JPEG) is neither derivative's. Source: ours; 0.04–0.4 for the derivative that made a map, 0.5–1 for others in real maps.
+/// (resizing, JPEG) is neither derivative's. Source: ours; 0.04–0.4 for the derivative that made a
+/// map, 0.5–1 for others in real maps.
 const CLEARLY_OF_OTHER_NOISE: f64 = 0.5;
 /// Mean power across D over that of rounding from which it is something else.
 const NOT_ROUNDING: f64 = 2.0;
 
 /// Distance of slopes from those of any surface, 0–1: the share of their power that lies across D,
-/// Σ |D_y P − D_x Q|²/|D|² / Σ (|P|² + |Q|²), where the slopes stand out of their noise (eight times the median
-/// power). A field that does not tile must come as its periodic component.
+/// Σ |D_y P − D_x Q|²/|D|² / Σ (|P|² + |Q|²), where the slopes stand out of their noise (eight
+/// times the median power). A field that does not tile must come as its periodic component.
 #[must_use]
 pub fn curl(field: &Slopes, derivative: Derivative) -> f64 {
     share_across(&Tiling::of(field).all_seen(derivative))
@@ -73,8 +76,9 @@ impl Evidence {
         Self { power: power[1..].to_vec(), across, blind, rounding: noise }
     }
 
-    /// Share of a surface that does not tile: each derivative's turning is taken by its own differences, away from the borders, and
-    /// under a window. Only long waves are asked, whose true derivative differences can take.
+    /// Share of a surface that does not tile: each derivative's turning is taken by its own
+    /// differences, away from the borders, and under a window. Only long waves are asked, whose
+    /// true derivative differences can take.
     pub fn of_inside(field: &Slopes, noise: f64) -> Self {
         let (w, h) = (field.along_u.width, field.along_u.height);
         let [across_u, across_v] = [w, h].map(|n| (0..n).map(|i| hann(i, n)).collect::<Vec<_>>());
@@ -87,7 +91,8 @@ impl Evidence {
             fft.spectrum(&values)
         };
         let [along_u, along_v] = [w, h].map(|n| (0..n).map(|k| angular_frequency(k, n)).collect::<Vec<_>>());
-        // The window mixes neighbouring frequencies: where the noise of the turning vanishes it says nothing.
+        // The window mixes neighbouring frequencies: where the noise of the turning vanishes it
+        // says nothing.
         let least = 3.0 * TAU / w.min(h) as f64;
         let asked = |place: usize| {
             let [wx, wy] = [along_u[place / h].abs(), along_v[place % h].abs()];
@@ -114,10 +119,12 @@ impl Evidence {
         Self { power: places.iter().map(|&place| all[place]).collect(), across, blind, rounding: noise }
     }
 
-    /// The derivatives that may have made the slopes, the likeliest first, never none; and whether the likeliest leaves no more than rounding. Where more is left
-    /// (resized maps, JPEG) the derivative that leaves the least was not what made half of them.
+    /// The derivatives that may have made the slopes, the likeliest first, never none; and whether
+    /// the likeliest leaves no more than rounding. Where more is left (resized maps, JPEG) the
+    /// derivative that leaves the least was not what made half of them.
     pub fn possible(&self) -> (Vec<Derivative>, bool) {
-        // The noise where there is any: that of a pattern that repeats falls on few frequencies and is the stronger there.
+        // The noise where there is any: that of a pattern that repeats falls on few frequencies and
+        // is the stronger there.
         let noise_with = |across: &Vec<f64>| {
             let (sum, squares) =
                 across.iter().fold((0.0, 0.0), |(sum, squares), a| (sum + a, squares + a * a));
@@ -137,7 +144,8 @@ impl Evidence {
         let mut left: Vec<_> = DERIVATIVES.into_iter().zip(self.across.iter().map(signal)).collect();
         left.sort_by(|a, b| a.1.total_cmp(&b.1));
         let best = left[0].0;
-        // Who leaves no more than rounding made the map; nobody else's map may hold what he is blind to.
+        // Who leaves no more than rounding made the map; nobody else's map may hold what he is
+        // blind to.
         let clean = self.mean_across(best) <= NOT_ROUNDING * self.rounding;
         let sees = |derivative| clean || !self.blind[place_of(derivative)];
         left.retain(|&(derivative, _)| sees(derivative));

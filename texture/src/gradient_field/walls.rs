@@ -1,4 +1,5 @@
-//! Walls between flat places: a wall narrower than the texels show is less high, the shorter the wave, than its true slopes say.
+//! Walls between flat places: a wall narrower than the texels show is less high, the shorter the
+//! wave, than its true slopes say.
 //!
 //! ```text
 //! D = ω (tan(ω/2)/(ω/2))^(w/2)        gain(ω_x, ω_y) = (D_x ω_x + D_y ω_y)/(D_x² + D_y²)
@@ -8,15 +9,18 @@
 //! | w | how far the surface consists of flat places and walls, 0–1: by the median slope over the root mean square |
 //! | D | half way, as a geometric mean, between the true derivative (w = 0) and that of steps from texel to texel, 2 tan(ω/2) |
 //!
-//! A height map's texel is a mean over the texel, a baked normal's is that of its steepest part. On rough or round surfaces the two differ by less
-//! than noise does; where a surface is flat but for upright walls all short waves are the walls'. Source: ours. Measured on 24 public sets
-//! of normals and displacements: waves of 3.7, 3.2, 2.8 and 2.5 texels come out 1.19, 1.33, 1.43 and 1.75 times too high
-//! on perforated sheets, 1.08, 1.14, 1.20 and 1.43 times on a facade of panels, where D says 1.12, 1.18, 1.27 and 1.48; 0.95–1.05 times where the median
-//! slope is above a tenth of the root mean square.
+//! A height map's texel is a mean over the texel, a baked normal's is that of its steepest part. On
+//! rough or round surfaces the two differ by less than noise does; where a surface is flat but for
+//! upright walls all short waves are the walls'. Source: ours. Measured on 24 public sets of
+//! normals and displacements: waves of 3.7, 3.2, 2.8 and 2.5 texels come out 1.19, 1.33, 1.43 and
+//! 1.75 times too high on perforated sheets, 1.08, 1.14, 1.20 and 1.43 times on a facade of panels,
+//! where D says 1.12, 1.18, 1.27 and 1.48; 0.95–1.05 times where the median slope is above a tenth
+//! of the root mean square.
 
 use super::Slopes;
 
-/// Median slope over the root mean square up to which a surface is flat places and walls: 0–0.05 in sheets, gratings and panels.
+/// Median slope over the root mean square up to which a surface is flat places and walls: 0–0.05 in
+/// sheets, gratings and panels.
 const ALL_WALLS: f64 = 0.05;
 /// Limit from which it is not: 0.1–0.6 in all others.
 const NO_WALLS: f64 = 0.1;
@@ -65,7 +69,8 @@ impl Walls {
     }
 }
 
-/// Share that walls leave of the height that true slopes give a wave, from [`Walls::axis`] of both axes.
+/// Share that walls leave of the height that true slopes give a wave, from [`Walls::axis`] of both
+/// axes.
 pub(super) fn gain([wx, dx]: [f64; 2], [wy, dy]: [f64; 2]) -> f64 {
     let square = dx * dx + dy * dy;
     if square > 0.0 { (dx * wx + dy * wy) / square } else { 1.0 }

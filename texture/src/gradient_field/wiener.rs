@@ -3,20 +3,24 @@
 //! ```text
 //! Z(k) = (D_x* P + D_y* Q) / (|D|² + N / S(k))        N / S = the noise of one slope over the surface's power
 //! ```
-//! (N. Wiener's filter.) Where a derivative is nearly blind, |D|² → 0, plain division blows noise up: Sobel's does so along both
-//! edges of the spectrum. S(k) is read from the slopes themselves: along D they carry |D|² S + N, so that in every ring of one frequency
+//! (N. Wiener's filter.) Where a derivative is nearly blind, |D|² → 0, plain division blows noise
+//! up: Sobel's does so along both edges of the spectrum. S(k) is read from the slopes themselves:
+//! along D they carry |D|² S + N, so that in every ring of one frequency
 //! ```text
 //! S = Σ (|D_x* P + D_y* Q|² / |D|² − N) |D|² / Σ |D|⁴
 //! ```
-//! is the estimate with the least error; N is [`Noise`]. A surface's power is taken to fall with frequency: rings where the estimate rises are joined with
-//! those below them (pool adjacent violators; R. Barlow et al., "Statistical Inference under Order Restrictions",
-//! 1972), which also says what the power is where nothing of it is seen. A line (patterns that repeat are made of them) that stands out of
-//! its ring counts for itself and not for its ring; lines and rings have to exceed what noise may gather. Eight sectors of directions are measured apart, for
-//! surfaces with a grain.
+//! is the estimate with the least error; N is [`Noise`]. A surface's power is taken to fall with
+//! frequency: rings where the estimate rises are joined with those below them (pool adjacent
+//! violators; R. Barlow et al., "Statistical Inference under Order Restrictions", 1972), which also
+//! says what the power is where nothing of it is seen. A line (patterns that repeat are made of
+//! them) that stands out of its ring counts for itself and not for its ring; lines and rings have
+//! to exceed what noise may gather. Eight sectors of directions are measured apart, for surfaces
+//! with a grain.
 //!
-//! Measured (`tests/normal_map.rs`) against division with a threshold: 8-bit Sobel ridges lose 1.96 % of their heights in place
-//! of 2.63 % (1.86 % if the true power of every frequency were known), wood 0.08 in place of 0.12 %; waves of one length, 11 to 26 texels,
-//! told how they were made, 0.01–0.5 % (up to 1.1 % when all frequencies up to the waves' were believed for their sake).
+//! Measured (`tests/normal_map.rs`) against division with a threshold: 8-bit Sobel ridges lose 1.96
+//! % of their heights in place of 2.63 % (1.86 % if the true power of every frequency were known),
+//! wood 0.08 in place of 0.12 %; waves of one length, 11 to 26 texels, told how they were made,
+//! 0.01–0.5 % (up to 1.1 % when all frequencies up to the waves' were believed for their sake).
 
 use super::bands::{Bands, Seen, UNSEEN};
 use super::noise::{LINE, Noise};
@@ -25,7 +29,8 @@ use super::noise::{LINE, Noise};
 const ROUNDS: usize = 4;
 /// |D|² from which a line is believed.
 const LEAST_OF_LINE: f64 = 0.01;
-/// The power spectrum of a surface by directions and rings, never rising with frequency, its lines, and the noise of its slopes.
+/// The power spectrum of a surface by directions and rings, never rising with frequency, its lines,
+/// and the noise of its slopes.
 pub(super) struct Wiener<'a> {
     bands: &'a Bands,
     noise: Noise,

@@ -4,8 +4,8 @@ use crate::answer::{Answer, AnswerAt};
 use crate::block::MAX_BLOCK;
 use crate::spline::Working;
 
-/// Path of a contact during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long, but for
-/// [`normal_force_n`](Self::normal_force_n), which may be empty.
+/// Path of a contact during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long,
+/// but for [`normal_force_n`](Self::normal_force_n), which may be empty.
 #[derive(Debug, Clone, Copy)]
 pub struct PathBlock<'a> {
     /// Position on the surface along its u and v axes, metres; (0, 0) is the top left corner of a
@@ -21,15 +21,16 @@ pub struct PathBlock<'a> {
     pub first_sample: u64,
     /// Which contact this is (its slot in the engine), so that a source can keep state per contact.
     pub contact: usize,
-    /// Whether [`SurfaceBlock::gradient`] is read; a source may leave it as it is otherwise.
+    /// True where [`SurfaceBlock::gradient`] is read; a source may leave it as it is otherwise.
     pub slopes: bool,
-    /// Whether only heights, roughness and power are read: a [rigid](Properties::is_rigid) source may then leave the rest as it is.
+    /// True where only heights, roughness and power are read: a [rigid](Properties::is_rigid)
+    /// source may then leave the rest as it is.
     pub heights_only: bool,
-    /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not [prepared](Setup::tip_radii_m) for it is
-    /// ridden by a point.
+    /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not
+    /// [prepared](Setup::tip_radii_m) for it is ridden by a point.
     pub tip_radius_m: f64,
-    /// Places of the body that the path lies at, m, one a sample; empty where the surface is a plane of its body. A block of stuff is
-    /// cut there; a sheet ignores it.
+    /// Places of the body that the path lies at, m, one a sample; empty where the surface is a
+    /// plane of its body. A block of stuff is cut there; a sheet ignores it.
     pub at_m: &'a [[f64; 3]],
     /// The least and the greatest coordinates of the path, where they are known ([`bounds`]).
     pub bounds_m: Option<[[f64; 2]; 2]>,
@@ -64,7 +65,7 @@ impl PathBlock<'_> {
         self.position_m.len()
     }
 
-    /// Whether there is no sample.
+    /// Tests whether there is no sample.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.position_m.is_empty()
@@ -88,12 +89,13 @@ pub struct SurfaceBlock {
     pub roughness: [f64; MAX_BLOCK],
     /// Coulomb friction coefficient.
     pub friction: [f64; MAX_BLOCK],
-    /// How far the surface gives way over the force that presses it (the path's), m/N; 0 = rigid. It is
+    /// Compliance of the surface over the force that presses it (the path's), m/N; 0 = rigid. It is
     /// the secant, not the slope: sand gives way by a law that is no straight line.
     pub compliance_m_n: [f64; MAX_BLOCK],
     /// The force with which it answers; only where [slopes](PathBlock::slopes) are read.
     pub answer: Answer,
-    /// Relief that the source really has about each sample, where the path [asks](PathBlock::full_power_m2).
+    /// Relief that the source really has about each sample, where the path
+    /// [asks](PathBlock::full_power_m2).
     pub power: Power,
     /// Working memory of maps, uninitialised between blocks.
     pub(crate) working: Working,
@@ -112,7 +114,8 @@ impl SurfaceBlock {
         self.power.kind = PowerKind::Full;
     }
 
-    /// The relief of the first `n` entries has a force law of its own, so that its slope pushes no more.
+    /// The relief of the first `n` entries has a force law of its own, so that its slope pushes no
+    /// more.
     pub fn push_no_slope(&mut self, n: usize) {
         for (i, gradient) in self.gradient.iter().enumerate().take(n) {
             self.answer.add(i, &AnswerAt { push_per_n: *gradient, ..AnswerAt::NONE }, 1.0);
@@ -135,8 +138,9 @@ impl Default for SurfaceBlock {
     }
 }
 
-/// The wavelengths a source represents, metres. Where it has relief the engine adds the paper's micro-noise only
-/// below `shortest_m`, so that no scale is rough twice ([`SurfaceBlock::power`] tells where).
+/// The wavelengths a source represents, metres. Where it has relief the engine adds the paper's
+/// micro-noise only below `shortest_m`, so that no scale is rough twice ([`SurfaceBlock::power`]
+/// tells where).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthBand {
     /// Shortest wavelength in the source; `f64::INFINITY` for a source without any relief.
@@ -159,11 +163,11 @@ impl WavelengthBand {
     }
 }
 
-/// Mean square of a source's relief at wavelengths up to some millimetres about each sample of a path, m². The
-/// engine's micro-relief fills in what is missing.
+/// Mean square of a source's relief at wavelengths up to some millimetres about each sample of a
+/// path, m². The engine's micro-relief fills in what is missing.
 #[derive(Debug, Clone)]
 pub struct Power {
-    /// How it is given.
+    /// Form in which it is given.
     pub kind: PowerKind,
     /// One value a sample, where [`PowerKind::EachSample`] says so.
     pub each_m2: [f64; MAX_BLOCK],
@@ -174,7 +178,8 @@ pub struct Power {
 pub enum PowerKind {
     /// No relief anywhere along the path.
     None,
-    /// As much everywhere as leaves no room for the micro-relief; also that of a source that gives none.
+    /// As much everywhere as leaves no room for the micro-relief; also that of a source that gives
+    /// none.
     Full,
     /// In [`Power::each_m2`].
     EachSample,

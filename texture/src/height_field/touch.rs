@@ -3,9 +3,11 @@
 /// Kinds of touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TouchKind {
-    /// A contact begins, before anything is read for it: what was kept of an earlier contact of this number is dropped.
+    /// A contact begins, before anything is read for it: what was kept of an earlier contact of
+    /// this number is dropped.
     Begins,
-    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`] samples of the absolute grid.
+    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`] samples of the absolute
+    /// grid.
     #[default]
     Presses,
     /// A tip stands `depth_m` below the untouched surface: which force carries it there?
@@ -18,7 +20,7 @@ pub enum TouchKind {
 /// A touch of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touch {
-    /// What it is.
+    /// Kind of touch.
     pub kind: TouchKind,
     /// The contact's slot, as in [`PathBlock::contact`].
     pub contact: usize,
@@ -39,9 +41,11 @@ pub struct Reaction {
     pub grain_rate_per_s: f64,
     /// Mean momentum of one such impact, N·s.
     pub grain_impulse_n_s: f64,
-    /// The ground under the contact is changing, whether it moves or not: a contact that rests must be computed.
+    /// The ground under the contact is changing, whether it moves or not: a contact that rests must
+    /// be computed.
     pub stirs: bool,
-    /// The force that carries a tip where it [stands](TouchKind::Stands), N, 0 above the ground; none where the ground is hard.
+    /// The force that carries a tip where it [stands](TouchKind::Stands), N, 0 above the ground;
+    /// none where the ground is hard.
     pub carries_n: Option<f64>,
 }
 

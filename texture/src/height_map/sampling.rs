@@ -5,7 +5,8 @@ use crate::height_field::{PathBlock, SurfaceBlock};
 use crate::spline::Working;
 
 impl HeightMap {
-    /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has for it.
+    /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has
+    /// for it.
     pub(super) fn sample_in(
         &self,
         path: &PathBlock<'_>,

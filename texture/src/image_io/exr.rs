@@ -1,8 +1,10 @@
-//! EXR maps: one layer of a file, with the channels that heights, roughness and normals are stored in.
+//! EXR maps: one layer of a file, with the channels that heights, roughness and normals are stored
+//! in.
 //!
-//! A channel is called `R`, `Y` or `V`, or by its layer first: `displacement.R`, `Depth.Z`. A file has layers of that kind, or parts
-//! that are named, or both. The layer without a name is the picture; without one, the only layer is. Where several have names,
-//! nobody knows which is the map. Values stay as they are; pixels outside the data window are 0.
+//! A channel is called `R`, `Y` or `V`, or by its layer first: `displacement.R`, `Depth.Z`. A file
+//! has layers of that kind, or parts that are named, or both. The layer without a name is the
+//! picture; without one, the only layer is. Where several have names, nobody knows which is the
+//! map. Values stay as they are; pixels outside the data window are 0.
 //!
 //! Source: OpenEXR, "Technical introduction" and "Standard attributes" (channel names).
 
@@ -104,7 +106,8 @@ fn layer(parts: &[Header]) -> Result<Layer, Problem> {
     layers.pop().ok_or_else(|| Problem::Unsupported("EXR without a flat layer of full resolution".into()))
 }
 
-/// The layers of a part; none where channels have fewer samples than pixels. A file's only part is often named after what wrote it.
+/// The layers of a part; none where channels have fewer samples than pixels. A file's only part is
+/// often named after what wrote it.
 fn layers_of(part: usize, header: &Header, is_only: bool) -> Vec<Layer> {
     let name = header.own_attributes.layer_name.as_ref().filter(|_| !is_only);
     let whole = name.map(ToString::to_string).unwrap_or_default();

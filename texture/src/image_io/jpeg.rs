@@ -1,8 +1,9 @@
 //! Coarseness of a JPEG file, as it says itself.
 //!
-//! A file is a row of segments: FF, marker, length of two bytes (big-endian, with itself), contents. Table DQT (marker DB) holds a byte (upper half: 0 for
-//! divisors of one byte, 1 for two; lower half: number of the table, 0 is the brightness') and 64 divisors from slow waves to fast ones.
-//! Source: ITU-T T.81, annexes B.1 and B.2.4.1.
+//! A file is a row of segments: FF, marker, length of two bytes (big-endian, with itself),
+//! contents. Table DQT (marker DB) holds a byte (upper half: 0 for divisors of one byte, 1 for two;
+//! lower half: number of the table, 0 is the brightness') and 64 divisors from slow waves to fast
+//! ones. Source: ITU-T T.81, annexes B.1 and B.2.4.1.
 
 use std::io::{self, BufRead, Seek, SeekFrom};
 
@@ -11,11 +12,13 @@ const QUANTISATION: u8 = 0xDB;
 const START_OF_SCAN: u8 = 0xDA;
 /// Divisors of a table.
 const DIVISORS: usize = 64;
-/// Slowest waves of a block, of which the coarsest divisor counts: its mean, and half a wave along each side.
+/// Slowest waves of a block, of which the coarsest divisor counts: its mean, and half a wave along
+/// each side.
 const SLOWEST: usize = 3;
 
-/// The coarsest divisor of the slowest waves of brightness, levels of 255 of a block's waves of unit power; `None` where there is no such table, as in
-/// files that are no JPEG. Leaves the file at its beginning.
+/// The coarsest divisor of the slowest waves of brightness, levels of 255 of a block's waves of
+/// unit power; `None` where there is no such table, as in files that are no JPEG. Leaves the file
+/// at its beginning.
 pub(super) fn divisor(file: &mut (impl BufRead + Seek)) -> Option<f64> {
     let found = search(file).ok().flatten();
     file.rewind().ok()?;
@@ -86,7 +89,8 @@ mod tests {
 
     #[test]
     fn the_divisor_is_that_of_the_quality() {
-        // Annex K's divisors of the slowest waves are 16, 11 and 12; quality 50 leaves them, 75 halves them, 90 divides by five.
+        // Annex K's divisors of the slowest waves are 16, 11 and 12; quality 50 leaves them, 75
+        // halves them, 90 divides by five.
         for (quality, divisor) in [(50, 16.0), (75, 8.0), (90, 3.0)] {
             let mut file = Cursor::new(file(quality));
             assert_eq!(super::divisor(&mut file), Some(divisor));

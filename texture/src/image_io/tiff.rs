@@ -1,4 +1,5 @@
-//! TIFF maps of one channel of 32 or 64 bits, as terrain programs write them: `image` reads such numbers only in colour.
+//! TIFF maps of one channel of 32 or 64 bits, as terrain programs write them: `image` reads such
+//! numbers only in colour.
 
 use super::{MAX_SIDE, MAX_TEXELS, Picture, Problem, Samples, one_line};
 use std::io::{BufRead, Seek};

@@ -1,12 +1,14 @@
-//! Arrangement of a surface: correlations of its sub-bands with another one's, in place and at the shift where they are highest.
+//! Arrangement of a surface: correlations of its sub-bands with another one's, in place and at the
+//! shift where they are highest.
 //!
 //! ```text
 //! r(d) = mean over λ, μ of  Σ_k Ψ² Re(A B* e^(i k d)) / √(Σ_k Ψ² |A|² · Σ_k Ψ² |B|²)
 //! ```
-//! A, B: spectra of the two surfaces, d: how far B is moved. 1 for the same arrangement at any strength of the bands, 0 for strangers. All shifts
-//! are one inverse transform of the bands' cross spectra. Bands in which either surface has next to nothing ([`EMPTY_BAND`]) do
-//! not count. The highest of many thousand shifts is above 0 for strangers too: by the waves of their coarsest band, of which there
-//! are a few.
+//! A, B: spectra of the two surfaces, d: how far B is moved. 1 for the same arrangement at any
+//! strength of the bands, 0 for strangers. All shifts are one inverse transform of the bands' cross
+//! spectra. Bands in which either surface has next to nothing ([`EMPTY_BAND`]) do not count. The
+//! highest of many thousand shifts is above 0 for strangers too: by the waves of their coarsest
+//! band, of which there are a few.
 
 use super::EMPTY_BAND;
 use crate::pyramid::{Kind, Pyramid};

@@ -1,4 +1,5 @@
-//! The sub-bands of images of one size, and how those of the reference are spread, which they are matched to.
+//! The sub-bands of images of one size, and how those of the reference are spread, which they are
+//! matched to.
 
 use crate::distribution::Distribution;
 use crate::histogram::Matcher;
@@ -10,7 +11,8 @@ use asperity_fft::num_complex::Complex64;
 /// Which sub-bands a pass changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Parts {
-    /// The oriented ones and the high residual: what a tilt, which no surface that tiles can have, leaves alone.
+    /// The oriented ones and the high residual: what a tilt, which no surface that tiles can have,
+    /// leaves alone.
     AllButTheSlowest,
     /// All of them.
     All,
@@ -43,8 +45,8 @@ pub(super) struct Bands {
 }
 
 impl Bands {
-    /// Analyses `reference` (which tiles) by `bands` × `orientations` for images of `width` × `height`; every band is as large as
-    /// the image.
+    /// Analyses `reference` (which tiles) by `bands` × `orientations` for images of `width` ×
+    /// `height`; every band is as large as the image.
     pub fn new(
         reference: &Raster,
         [width, height]: [usize; 2],
@@ -75,8 +77,8 @@ impl Bands {
         Ok(Self { pyramid, wanted })
     }
 
-    /// Mean distance of equal quantiles of each sub-band of `image`, over the deviation of the reference's or over `floor`
-    /// where that is larger.
+    /// Mean distance of equal quantiles of each sub-band of `image`, over the deviation of the
+    /// reference's or over `floor` where that is larger.
     pub fn distances(&mut self, image: &Raster, floor: f64, scratch: &mut Scratch) -> Vec<f64> {
         let mut distances = Vec::new();
         let wanted = &self.wanted;
@@ -88,8 +90,8 @@ impl Bands {
         distances
     }
 
-    /// Splits `image`, spreads the sub-bands of `parts` like the reference's and leaves half the spectrum of what all
-    /// add up to in `scratch.sum`.
+    /// Splits `image`, spreads the sub-bands of `parts` like the reference's and leaves half the
+    /// spectrum of what all add up to in `scratch.sum`.
     pub fn match_all(&mut self, image: &[f64], parts: Parts, scratch: &mut Scratch) {
         let Scratch { matcher, spectrum, sum, subband } = scratch;
         self.pyramid.half_spectrum(image, spectrum);

@@ -73,8 +73,8 @@ impl Feel {
         }
     }
 
-    /// Makes `original` feel like the reference. `stored` is given the heights and returns what is left of them in a file: that is
-    /// measured and returned. `progress` is told the fraction done.
+    /// Makes `original` feel like the reference. `stored` is given the heights and returns what is
+    /// left of them in a file: that is measured and returned. `progress` is told the fraction done.
     ///
     /// # Errors
     /// When the original holds numbers that are not finite.
@@ -141,13 +141,15 @@ impl Feel {
         Ok(Some(Box::new(Self::new(&ground, width, height, &options)?)))
     }
 
-    /// Tolerance of every sample of every band, as the result is judged: as many samples as the waves need may show a fifth less.
+    /// Tolerance of every sample of every band, as the result is judged: as many samples as the
+    /// waves need may show a fifth less.
     pub(super) fn mean_of(&mut self, image: &Raster) -> f64 {
         let distances = distances(&mut self.level, image, &mut self.scratch);
         mean(&self.level, &distances)
     }
 
-    /// Correlations of the sub-bands of an image with those of an original, and of the reference laid out over its size.
+    /// Correlations of the sub-bands of an image with those of an original, and of the reference
+    /// laid out over its size.
     fn arrangement(&mut self, original: &Raster, image: &Raster, tiles: bool) -> [Correlation; 2] {
         let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
         let image = SplitBorders::of(image, borders).periodic;
@@ -162,8 +164,8 @@ impl Feel {
         reference.at(x % reference.width, y % reference.height)
     }
 
-    /// The slowest waves are left to the heights where the reference has others than a surface like the original can have: a
-    /// tilt where it tiles, or waves of another size.
+    /// The slowest waves are left to the heights where the reference has others than a surface like
+    /// the original can have: a tilt where it tiles, or waves of another size.
     fn parts(&self, seam: Option<&Raster>) -> Parts {
         let Raster { width, height, .. } = self.reference.periodic;
         let has_tilt = self.reference.smooth.is_some() && seam.is_none();
@@ -224,7 +226,8 @@ mod tests {
     use super::*;
     use asperity_dsp::rng::Rng;
 
-    /// A diamond plate under rock at 1024² was 0.018 σ away by the samples its waves need, and 0.024 by all of them: the passes ended too early.
+    /// A diamond plate under rock at 1024² was 0.018 σ away by the samples its waves need, and
+    /// 0.024 by all of them: the passes ended too early.
     #[test]
     fn a_start_of_a_large_surface_is_judged_by_all_samples_as_the_result_is() {
         let mut rng = Rng::new(17);

@@ -9,15 +9,17 @@
 //! | H | the heights take the reference's histogram: last, so that plateaus stay flat and nothing leaves its range |
 //! | s; m, k | [`BAND_STEP`]; of these two one at the most, by [`Gait`] |
 //!
-//! What a coarser grid has changed is added by its spectrum before the first pass here. So long waves, which on the fine
-//! grid move by a texel a pass, are at their place at a sixteenth of the work. Without momentum and coarser grids 50 passes
-//! leave 0.05–0.07 of σ on maps with plateaus (a walkway, a diamond plate), with them 20 leave 0.010–0.018.
+//! What a coarser grid has changed is added by its spectrum before the first pass here. So long
+//! waves, which on the fine grid move by a texel a pass, are at their place at a sixteenth of the
+//! work. Without momentum and coarser grids 50 passes leave 0.05–0.07 of σ on maps with plateaus (a
+//! walkway, a diamond plate), with them 20 leave 0.010–0.018.
 //!
-//! Of terraces H takes back every move that does not lift a place to the next height, so that passes without a memory come to rest where
-//! all moves are small. Term k keeps what was taken back until it suffices (the error feedback of V. Elser, "Phase retrieval by iterated
-//! projections", JOSA A 20, 2003, without its reflection, which left twice as much): of fractal ground cut to 3, 6 and 12 heights
-//! 0.018, 0.014 and 0.006 σ are left instead of 0.041, 0.041 and 0.032, and 0.5–0.8 of the original's arrangement, where before the
-//! reference had to lend all of its own.
+//! Of terraces H takes back every move that does not lift a place to the next height, so that
+//! passes without a memory come to rest where all moves are small. Term k keeps what was taken back
+//! until it suffices (the error feedback of V. Elser, "Phase retrieval by iterated projections",
+//! JOSA A 20, 2003, without its reflection, which left twice as much): of fractal ground cut to 3,
+//! 6 and 12 heights 0.018, 0.014 and 0.006 σ are left instead of 0.041, 0.041 and 0.032, and
+//! 0.5–0.8 of the original's arrangement, where before the reference had to lend all of its own.
 
 use super::bands::{Bands, Parts, Scratch};
 use crate::borders::{Borders, SplitBorders};
@@ -28,17 +30,18 @@ use crate::spectral_envelope::Envelope;
 use crate::spectral_resample::{resample, resample_mirrored};
 use asperity_dsp::DesignError;
 
-/// Factor of each pass's move of the surface along the change that matching the bands makes. Beyond 1: the
-/// change is the same from pass to pass, only smaller.
+/// Factor of each pass's move of the surface along the change that matching the bands makes. Beyond
+/// 1: the change is the same from pass to pass, only smaller.
 const BAND_STEP: f64 = 1.7;
-/// Share of a pass's move that the next one repeats, where it must: surfaces without plateaus come near without, and momentum
-/// carries them away from the original's arrangement (correlation of the sub-bands 0.8–0.9 without, 0.4–0.6 with it).
+/// Share of a pass's move that the next one repeats, where it must: surfaces without plateaus come
+/// near without, and momentum carries them away from the original's arrangement (correlation of the
+/// sub-bands 0.8–0.9 without, 0.4–0.6 with it).
 const MOMENTUM: f64 = 0.8;
-/// Share of what the heights took back that is still there a pass later. Source: ours, the best of 0.8, 0.9, 0.95 and 1 on terraces,
-/// islands and dots of two heights.
+/// Share of what the heights took back that is still there a pass later. Source: ours, the best of
+/// 0.8, 0.9, 0.95 and 1 on terraces, islands and dots of two heights.
 const KEPT: f64 = 0.95;
-/// First passes that go no further than the change itself: only once the amplitudes are near the reference's does
-/// overshooting not turn the original's sub-bands over.
+/// First passes that go no further than the change itself: only once the amplitudes are near the
+/// reference's does overshooting not turn the original's sub-bands over.
 const GENTLE_PASSES: usize = 2;
 /// Part of the passes, at the end, without momentum.
 const CALM_PART: usize = 4;
@@ -46,13 +49,14 @@ const CALM_PART: usize = 4;
 const FORGETFUL_PART: usize = 8;
 /// Most that imposing the envelope changes an amplitude in one pass.
 const MOST_GAIN: f64 = 2.0;
-/// Side of the grid, texels, that gets the passes asked for. Coarser ones get up to [`MOST_PASSES`] times as many, finer ones
-/// fewer, by their sides: each octave costs twice the one below it.
+/// Side of the grid, texels, that gets the passes asked for. Coarser ones get up to [`MOST_PASSES`]
+/// times as many, finer ones fewer, by their sides: each octave costs twice the one below it.
 const SIDE: f64 = 256.0;
 const MOST_PASSES: f64 = 2.0;
 /// Fewest passes of a fine grid, if as many are asked for.
 const FEWEST_PASSES: usize = 4;
-/// Last passes on grids finer than [`SIDE`] that see every band in full; the others see as many samples as its waves need.
+/// Last passes on grids finer than [`SIDE`] that see every band in full; the others see as many
+/// samples as its waves need.
 const FULL_PASSES: usize = 1;
 
 /// Target that surfaces on one grid are matched to.
@@ -93,15 +97,16 @@ pub(super) struct Sought<'a> {
 pub(super) enum Gait {
     /// Nothing: this keeps the most of the original's arrangement.
     Plain,
-    /// It goes on from where it would be had the heights taken nothing back ([`KEPT`]): for terraces.
+    /// It goes on from where it would be had the heights taken nothing back ([`KEPT`]): for
+    /// terraces.
     Remembering,
     /// It repeats part of the last move ([`MOMENTUM`]).
     Momentum,
 }
 
 impl Gait {
-    /// This one, or nothing beyond the change in the passes that begin and end all of them: momentum would turn bands over while steps are
-    /// gentle, a memory of them does no harm.
+    /// This one, or nothing beyond the change in the passes that begin and end all of them:
+    /// momentum would turn bands over while steps are gentle, a memory of them does no harm.
     fn in_pass(self, pass: usize, all: usize) -> Self {
         let (first, last) = match self {
             Self::Plain => (0, 0),
@@ -111,7 +116,8 @@ impl Gait {
         if pass <= first || pass + last > all { Self::Plain } else { self }
     }
 
-    /// Addition to a height, and what is carried to the next pass: the height before, or the one before the heights were matched.
+    /// Addition to a height, and what is carried to the next pass: the height before, or the one
+    /// before the heights were matched.
     fn add(self, value: f64, change: f64, carried: f64) -> (f64, f64) {
         match self {
             Self::Plain => (value + change, value),
@@ -157,14 +163,16 @@ impl Level {
         })
     }
 
-    /// Passes on this grid, of those asked for. Terraces get more of them where others need few: their edges are on the fine grid alone.
+    /// Passes on this grid, of those asked for. Terraces get more of them where others need few:
+    /// their edges are on the fine grid alone.
     pub fn passes(&self, asked: usize, gait: Gait) -> usize {
         let share = (SIDE / texels_a_side(self.size)).min(MOST_PASSES);
         let share = if gait == Gait::Remembering && share < 1.0 { share.sqrt() } else { share };
         ((asked as f64 * share).round() as usize).max(asked.min(FEWEST_PASSES))
     }
 
-    /// The first grid, from here to coarser ones, of no more texels than [`SIDE`]²; how many steps away it is.
+    /// The first grid, from here to coarser ones, of no more texels than [`SIDE`]²; how many steps
+    /// away it is.
     pub fn of_moderate_size(&mut self) -> (&mut Self, usize) {
         let steps = self.steps_to_moderate_size();
         let level = (0..steps).fold(self, |level, _| level.coarser.as_mut().expect("steps were counted"));
@@ -178,8 +186,8 @@ impl Level {
         }
     }
 
-    /// Moves `image`, to which `seam` is added for its heights, towards the reference, and returns the passes done on this grid.
-    /// `enough` is asked after each.
+    /// Moves `image`, to which `seam` is added for its heights, towards the reference, and returns
+    /// the passes done on this grid. `enough` is asked after each.
     pub fn settle(
         &mut self,
         image: &mut Raster,

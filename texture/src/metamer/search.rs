@@ -1,4 +1,5 @@
-//! Search for a surface with the reference's feel: ways, starts and gaits one after the other, until one comes near enough.
+//! Search for a surface with the reference's feel: ways, starts and gaits one after the other,
+//! until one comes near enough.
 
 use super::bands::Scratch;
 use super::feel::{Feel, deviation, distances, mean};
@@ -16,7 +17,8 @@ const MARGIN: f64 = 0.9;
 const HOPEFUL: f64 = 2.0;
 /// Passes of the first round, where there are more.
 const PROMISING: f64 = 5.0;
-/// Texels that rounds over terraces may pass over, all together, and most rounds in a row. Source: ours; at 1024² these are two, three seconds each.
+/// Texels that rounds over terraces may pass over, all together, and most rounds in a row. Source:
+/// ours; at 1024² these are two, three seconds each.
 const TEXELS: usize = 2 << 20;
 const MOST_ROUNDS: usize = 6;
 /// Share of the distance that a round may leave at the most for another one to be worth it.
@@ -46,7 +48,9 @@ struct Try {
 }
 
 impl Feel {
-    /// Of a flat reference nothing but a flat surface; of terraces with a memory, then from the ground under them; of other surfaces, and where both have no prospect, by a search.
+    /// Start of a search: of a flat reference nothing but a flat surface; of terraces with a
+    /// memory, then from the ground under them; of other surfaces, and where both have no prospect,
+    /// by a search.
     pub(super) fn iterate(
         &mut self,
         sought: Sought,
@@ -74,8 +78,8 @@ impl Feel {
         Ok(by_steps.into_iter().fold(searched, Made::nearer))
     }
 
-    /// Passes with a memory from the original itself, if the reference is terraces: others come to nothing there. Of a large surface only where its
-    /// coarser copy comes near.
+    /// Passes with a memory from the original itself, if the reference is terraces: others come to
+    /// nothing there. Of a large surface only where its coarser copy comes near.
     fn by_memory(&mut self, sought: Sought, rounds: usize) -> Option<Made> {
         self.terraces.as_ref()?;
         self.is_hopeful(sought.original, sought).then(|| self.rounds(sought.original.clone(), sought, rounds))
@@ -92,7 +96,8 @@ impl Feel {
             let tries = ground.tries(task);
             let (made, with) = ground.nearest(sought, tries, MARGIN, coarsely);
             self.is_hopeful(&made.image, sought).then(|| match rounds {
-                // The ground is smooth: the finest grids have hardly more of it, and their time is better spent on a round.
+                // The ground is smooth: the finest grids have hardly more of it, and their time is
+                // better spent on a round.
                 0..=2 => {
                     let image = on_grid(&made.image, Borders::Periodic, self.level.size);
                     Made { image, ..made }
@@ -113,8 +118,9 @@ impl Feel {
         self.is_moderate() || self.try_coarsely(start, sought.seam, with).mean <= HOPEFUL * self.goal()
     }
 
-    /// Passes with a memory over all grids, and again from what they have made, while that comes nearer: on the coarser grids terraces are slopes, whose
-    /// edges move further than on the fine one. One round at least.
+    /// Passes with a memory over all grids, and again from what they have made, while that comes
+    /// nearer: on the coarser grids terraces are slopes, whose edges move further than on the fine
+    /// one. One round at least.
     fn rounds(&mut self, start: Raster, sought: Sought, most: usize) -> Made {
         let with = remembering(sought.task);
         let mut made = self.try_out(start, sought.seam, with);
@@ -131,8 +137,9 @@ impl Feel {
         made
     }
 
-    /// Passes from the original, then with a memory, then with momentum, then from surfaces that have more and more of the reference's own
-    /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
+    /// Passes from the original, then with a memory, then with momentum, then from surfaces that
+    /// have more and more of the reference's own arrangement, until the result is near enough. Of
+    /// large maps this is tried on a coarser grid.
     fn search(&mut self, sought: Sought, progress: &mut dyn FnMut(f64)) -> Made {
         let Sought { seam, task, .. } = sought;
         let tries = self.tries(task);
@@ -151,7 +158,8 @@ impl Feel {
         let (made, begun) = self.nearest(sought, tries, MARGIN, coarsely);
         // Terraces are slopes on the coarser grid: only the fine one asks for a memory.
         let alone = (made.borrowed == 0.0 && begun.task.gait == Gait::Plain).then_some(remembering(task));
-        // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
+        // What serves the coarser copy may not serve the surface itself, whose finest waves only it
+        // has.
         let most = self.options.borrow;
         let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
         let more = more.step_by(2).map(|share| briskly(share, task));
@@ -159,7 +167,8 @@ impl Feel {
         self.nearest(sought, tries, 1.0, |feel, start, with| feel.try_out(start, seam, with)).0
     }
 
-    /// The nearest of what `make` does with some starts, and which it was; none is tried after one within `margin` of the goal.
+    /// The nearest of what `make` does with some starts, and which it was; none is tried after one
+    /// within `margin` of the goal.
     fn nearest(
         &mut self,
         sought: Sought,
@@ -230,8 +239,8 @@ impl Feel {
         self.options.until.unwrap_or(REACH)
     }
 
-    /// The original, or a mixture of it (brought to the reference's mean and deviation) and the reference itself, which has
-    /// the reference's heights.
+    /// The original, or a mixture of it (brought to the reference's mean and deviation) and the
+    /// reference itself, which has the reference's heights.
     fn start(&mut self, original: &Raster, seam: Option<&Raster>, share: f64) -> Raster {
         if share == 0.0 {
             return original.clone();

@@ -1,4 +1,5 @@
-//! Terraces: surfaces of a few heights, whose texels move by a whole step or not at all, and the smooth ground under them.
+//! Terraces: surfaces of a few heights, whose texels move by a whole step or not at all, and the
+//! smooth ground under them.
 //!
 //! ```text
 //! z ← min(max(B_h z, l), u)        h = half the shorter side/8, … , 4, 2, 1 texels
@@ -9,8 +10,9 @@
 //! | B_h | three running means of 2h + 1 texels along each side |
 //! | l, u | half-way to the next heights below and above the texel's own |
 //!
-//! Cut to the heights again the ground is the terraces, but for texels half-way between two. It has slopes, which passes turn little by little, where of large plateaus a texel moves by a
-//! whole step or not at all, so that an original's many small islands stay.
+//! Cut to the heights again the ground is the terraces, but for texels half-way between two. It has
+//! slopes, which passes turn little by little, where of large plateaus a texel moves by a whole
+//! step or not at all, so that an original's many small islands stay.
 
 use crate::raster::Raster;
 use crate::wrap::Wrap;

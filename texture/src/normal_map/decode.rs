@@ -1,11 +1,15 @@
 //! Slopes from the numbers of a normal map.
 //!
-//! Gentle slopes: red and green tell n_z better than blue does, whose steps are too coarse near 1. Steep ones: blue. A normal that is no unit vector was
-//! averaged with others, as resizing does: its blue is the average's, and −n_x / n_z nearer to the average slope than what red and green alone would
-//! say; the same where somebody scaled it. Blue says nothing in maps of two channels, where it is the same everywhere or does not follow from red and green.
+//! Gentle slopes: red and green tell n_z better than blue does, whose steps are too coarse near 1.
+//! Steep ones: blue. A normal that is no unit vector was averaged with others, as resizing does:
+//! its blue is the average's, and −n_x / n_z nearer to the average slope than what red and green
+//! alone would say; the same where somebody scaled it. Blue says nothing in maps of two channels,
+//! where it is the same everywhere or does not follow from red and green.
 //!
-//! Normals of a steep surface, averaged, are much shorter than 1 (half as long and less in maps of rock and lava), and red and green alone would halve their slopes. An
-//! average of unit vectors is never longer than 1, and is the flatter the higher both its blue and what red and green say of it.
+//! Normals of a steep surface, averaged, are much shorter than 1 (half as long and less in maps of
+//! rock and lava), and red and green alone would halve their slopes. An average of unit vectors is
+//! never longer than 1, and is the flatter the higher both its blue and what red and green say of
+//! it.
 
 use super::next_to_zero::NextToZero;
 use crate::gradient_field::Slopes;
@@ -21,7 +25,8 @@ const STEEP: f64 = 0.5;
 const ROUNDED: f64 = 0.01;
 /// Root mean square by which blue may differ from what red and green say and still be theirs.
 const UNRELATED: f64 = 0.2;
-/// Correlation of both from which blue is that of averages, further away though it is. Source: ours; 0.47–0.83 in three maps of rock and lava whose normals are short.
+/// Correlation of both from which blue is that of averages, further away though it is. Source:
+/// ours; 0.47–0.83 in three maps of rock and lava whose normals are short.
 const RELATED: f64 = 0.4;
 /// Length of a normal that JPEG made longer than 1 at the most.
 const LONGEST: f64 = 1.1;

@@ -1,13 +1,15 @@
-//! Unbiased values for the two codes around zero of an 8-bit channel, which has no code for 0 itself.
+//! Unbiased values for the two codes around zero of an 8-bit channel, which has no code for 0
+//! itself.
 //!
-//! A step k of a channel stands for all components between two halves; their mean is the middle if the components are spread evenly. Next to 0
-//! they are not where a map has flat places: those all come out at one step, or one of two, and would tilt. With n₀ texels at
-//! the step next to 0 and n₁, n₂ at the following ones, the texels that are not flat are about
+//! A step k of a channel stands for all components between two halves; their mean is the middle if
+//! the components are spread evenly. Next to 0 they are not where a map has flat places: those all
+//! come out at one step, or one of two, and would tilt. With n₀ texels at the step next to 0 and
+//! n₁, n₂ at the following ones, the texels that are not flat are about
 //! ```text
 //! m = min(n₀, n₁² / n₂) ≥ n₁, falling as e^(−μ n) within the step, μ = ln(m / n₁)
 //! ```
-//! with the mean 1/μ − 1/(e^μ − 1) steps from 0, and the rest is flat. Source: ours, after the reconstruction points of
-//! quantisers (S. Lloyd, "Least squares quantization in PCM", 1982).
+//! with the mean 1/μ − 1/(e^μ − 1) steps from 0, and the rest is flat. Source: ours, after the
+//! reconstruction points of quantisers (S. Lloyd, "Least squares quantization in PCM", 1982).
 //!
 //! Measured: hills on flat ground (8 bits, 256²) lose 0.65 % of their heights without it.
 

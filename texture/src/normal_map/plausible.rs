@@ -3,16 +3,19 @@
 //! ```text
 //! share of texels with n_z < 0 ≤ MOST_DOWN        hypot(mean n_x, mean n_y) ≤ mean n_z
 //! ```
-//! Photographs fail the first when they are dark or even in blue, and the second when they are bright: there red, green and blue are alike, where a
-//! normal map is blue. Integrated they would give a surface that has nothing to do with theirs, and say nothing.
+//! Photographs fail the first when they are dark or even in blue, and the second when they are
+//! bright: there red, green and blue are alike, where a normal map is blue. Integrated they would
+//! give a surface that has nothing to do with theirs, and say nothing.
 
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 
-/// Share of texels whose normal may point down. Source: ours; at most 0.1 % of 41 public maps, 0.8 % and more of all photographs that do not lean.
+/// Share of texels whose normal may point down. Source: ours; at most 0.1 % of 41 public maps, 0.8
+/// % and more of all photographs that do not lean.
 pub const MOST_DOWN: f64 = 0.02;
 
-/// Refuses what is no map of normals; a map of two channels, whose blue is the same everywhere, says nothing.
+/// Refuses what is no map of normals; a map of two channels, whose blue is the same everywhere,
+/// says nothing.
 pub(super) fn check(red: &Raster, green: &Raster, blue: &Raster) -> Result<(), DesignError> {
     let (low, high) = blue.range();
     if low == high {

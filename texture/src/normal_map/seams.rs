@@ -1,4 +1,5 @@
-//! Tiling test of a normal map, by two questions at each seam: do the slopes go on, and do the heights?
+//! Tiling test of a normal map, by two questions at each seam: do the slopes go on, and do the
+//! heights?
 //!
 //! ```text
 //! t = (A − N)/(F − N)        j = (mean (z_first − z_last − step)²)/(2 var z)        open: t' + j > 1.3 at either seam
@@ -10,16 +11,23 @@
 //! | F | the same between a border and any place |
 //! | z | heights of the slopes' means over a 128th of the smaller side, integrated as of a map that ends |
 //!
-//! t is 0 where a seam is like any other place and 1 where both sides have nothing to do with each other. The scales are weighed by how many differences there
-//! are and how much neighbours are alike, k = n ((F − N)/F)²; t' = Σ k t/(Σ k + 30), so that rough or noisy maps, where no seam can be seen, are taken to tile. JPEG rounds blocks apart,
-//! at a seam as anywhere else, and means of blocks hardly at all. Some cuts have slopes that happen to go on; their heights do not: j is about 1 in a cut, and above 0.3 together with a step of the slopes many
-//! times those next to it in a smooth one. Long waves of normals that were
-//! painted or put together need not close, so that j is at most what it is by its waves from a third of the seam down, each over its own power, and counts the
-//! less the more of the slopes is none of any surface. A small cut has few rows, and what lies near its borders may be flat on one side: a step of
-//! the normals that is 1.8 times the largest one inside ends a map whatever else, because a seam of one that tiles is a place like any other.
+//! t is 0 where a seam is like any other place and 1 where both sides have nothing to do with each
+//! other. The scales are weighed by how many differences there are and how much neighbours are
+//! alike, k = n ((F − N)/F)²; t' = Σ k t/(Σ k + 30), so that rough or noisy maps, where no seam can
+//! be seen, are taken to tile. JPEG rounds blocks apart, at a seam as anywhere else, and means of
+//! blocks hardly at all. Some cuts have slopes that happen to go on; their heights do not: j is
+//! about 1 in a cut, and above 0.3 together with a step of the slopes many times those next to it
+//! in a smooth one. Long waves of normals that were painted or put together need not close, so that
+//! j is at most what it is by its waves from a third of the seam down, each over its own power, and
+//! counts the less the more of the slopes is none of any surface. A small cut has few rows, and
+//! what lies near its borders may be flat on one side: a step of the normals that is 1.8 times the
+//! largest one inside ends a map whatever else, because a seam of one that tiles is a place like
+//! any other.
 //!
-//! Measured, before that last rule, on 26 public sets in twelve variants each (halved, enlarged, cut, JPEG 75 to 95; numpy): 15 of 208 that tile are taken for ones that do not, all rough
-//! or nearly flat and noisy; of 104 cuts 30 are taken to tile: 11 of patterns that do repeat there, 19 of rough or flat ones whose seam cannot be seen.
+//! Measured, before that last rule, on 26 public sets in twelve variants each (halved, enlarged,
+//! cut, JPEG 75 to 95; numpy): 15 of 208 that tile are taken for ones that do not, all rough or
+//! nearly flat and noisy; of 104 cuts 30 are taken to tile: 11 of patterns that do repeat there, 19
+//! of rough or flat ones whose seam cannot be seen.
 
 use crate::gradient_field::{Derivative, Slopes, integrate_open};
 use crate::raster::Raster;
@@ -27,11 +35,13 @@ use std::f64::consts::TAU;
 
 /// t' + j from which a map does not tile.
 const ENDS: f64 = 1.3;
-/// A over the mean square of the steps on both sides of a seam, and j, from which a map does not tile whatever else: a smooth one.
+/// A over the mean square of the steps on both sides of a seam, and j, from which a map does not
+/// tile whatever else: a smooth one.
 const STEP: f64 = 12.0;
 const SEEN_JUMP: f64 = 0.3;
-/// Step of normals across a seam over the largest inside from which a map does not tile, and fewest steps that tell it. Source: ours; of 27 public sets in eight
-/// variants each those that tile stay below 1.46, of 150 made ones in five below 1.64; half of the cuts are above 1.8.
+/// Step of normals across a seam over the largest inside from which a map does not tile, and fewest
+/// steps that tell it. Source: ours; of 27 public sets in eight variants each those that tile stay
+/// below 1.46, of 150 made ones in five below 1.64; half of the cuts are above 1.8.
 const OUTSTANDING: f64 = 1.8;
 const ENOUGH_STEPS: usize = 32;
 /// Evidence that counts half.
@@ -92,8 +102,9 @@ fn has_step(field: &Slopes) -> bool {
     across > STEP * next
 }
 
-/// Tests whether the step of either normal's component across the seam, mean square of all rows, is larger than any between neighbours inside: in a map that tiles
-/// a seam is a place like any other. Normals, because a few walls outweigh the rest of a map's slopes.
+/// Tests whether the step of either normal's component across the seam, mean square of all rows, is
+/// larger than any between neighbours inside: in a map that tiles a seam is a place like any other.
+/// Normals, because a few walls outweigh the rest of a map's slopes.
 fn stands_out(field: &Slopes) -> bool {
     let (width, rows) = (field.along_u.width, field.along_u.height);
     let mut steps = vec![[0.0; 2]; width];
@@ -182,7 +193,8 @@ fn heights_end(field: &Slopes) -> [f64; 2] {
     [jump(&heights, &coarse.along_u), jump(&heights.transposed(), &coarse.along_v.transposed())]
 }
 
-/// The heights of slopes along v that point up or down, whichever leave less, which the slopes then do, and the share they leave.
+/// The heights of slopes along v that point up or down, whichever leave less, which the slopes then
+/// do, and the share they leave.
 fn nearer_surface(slopes: &mut Slopes) -> (Raster, f64) {
     let mut ask = || {
         let heights = integrate_open(slopes, Derivative::Exact);
@@ -282,7 +294,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Slopes of waves that fit into 128 texels; with steps of `blocks` at the borders of blocks of eight.
+    /// Slopes of waves that fit into 128 texels; with steps of `blocks` at the borders of blocks of
+    /// eight.
     fn waves(width: usize, blocks: f64) -> Slopes {
         let slope = |along_v: bool| {
             Raster::from_fn(width, 128, |x, y| {
@@ -315,7 +328,8 @@ mod tests {
         Slopes { along_v: along_u.map(|slope| 0.3 * slope), along_u }
     }
 
-    /// A toy box cut through its side was taken to tile: the heights go on by chance, and most of the map is flat.
+    /// A toy box cut through its side was taken to tile: the heights go on by chance, and most of
+    /// the map is flat.
     #[test]
     fn a_small_cut_through_the_side_of_a_box_stands_out_and_a_whole_box_does_not() {
         for width in [96, 150, 216] {
@@ -346,7 +360,8 @@ mod tests {
 
     #[test]
     fn ground_that_was_cut_where_its_slopes_happen_to_go_on_does_not_tile() {
-        // Slopes repeat after 128 texels along u, heights do not: every row climbs by what its neighbours do not.
+        // Slopes repeat after 128 texels along u, heights do not: every row climbs by what its
+        // neighbours do not.
         let climb = |y: usize| (TAU * 5.0 * y as f64 / 128.0).sin();
         let along_u = Raster::from_fn(128, 128, |x, y| {
             0.06 * climb(y) + (TAU * 9.0 * x as f64 / 128.0).cos() * (TAU * 4.0 * y as f64 / 128.0).cos()

@@ -3,14 +3,17 @@
 //! ```text
 //! P_t > MOST P_m        mean power of waves of 2–3 texels (t) and of 3–6 texels (m)
 //! ```
-//! Heights have less of shorter waves, at most as much (white noise). Central and Sobel's differences hardly see waves of 2 to 3 texels, so integration
-//! divides these by next to nothing. Of slopes made by such differences little is there to be divided; resizing, sharpening and JPEG leave more.
+//! Heights have less of shorter waves, at most as much (white noise). Central and Sobel's
+//! differences hardly see waves of 2 to 3 texels, so integration divides these by next to nothing.
+//! Of slopes made by such differences little is there to be divided; resizing, sharpening and JPEG
+//! leave more.
 
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
 use std::f64::consts::PI;
 
-/// Power of the shortest waves over that of longer ones from which they were raised; 1 of white noise.
+/// Power of the shortest waves over that of longer ones from which they were raised; 1 of white
+/// noise.
 const MOST: f64 = 1.5;
 
 /// Tests whether the shortest waves of these heights outgrow longer ones.

@@ -4,8 +4,9 @@ use super::{Channel, Picture, Problem, Samples};
 use crate::raster::Raster;
 
 impl Picture {
-    /// Means of the brightness ([`Channel::Luma`]) of `n` × `n` pixels, at least 1, as 0–1; what does not fill one at the right and
-    /// lower border is left out. To the bit the means of [`Picture::channel`]: whoever reads all of a picture first finds the same surface.
+    /// Means of the brightness ([`Channel::Luma`]) of `n` × `n` pixels, at least 1, as 0–1; what
+    /// does not fill one at the right and lower border is left out. To the bit the means of
+    /// [`Picture::channel`]: whoever reads all of a picture first finds the same surface.
     ///
     /// # Errors
     /// When a value is not finite.

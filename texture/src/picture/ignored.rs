@@ -1,12 +1,13 @@
 //! Channels of a picture that nobody asked for: colours where a map is grey, an alpha that varies.
 //!
-//! Packed textures keep heights in alpha, or occlusion, roughness and metal in red, green and blue. Their brightness is a map
-//! of nothing, and no error either: a map that was saved in colour is read by its brightness.
+//! Packed textures keep heights in alpha, or occlusion, roughness and metal in red, green and blue.
+//! Their brightness is a map of nothing, and no error either: a map that was saved in colour is
+//! read by its brightness.
 
 use super::{Channel, Picture, Samples};
 
-/// Mean distance of a pixel's strongest and weakest colour from which a picture is coloured, of white: JPEG leaves 0.01 of a
-/// grey one, wood and stone have 0.1.
+/// Mean distance of a pixel's strongest and weakest colour from which a picture is coloured, of
+/// white: JPEG leaves 0.01 of a grey one, wood and stone have 0.1.
 const COLOURED: f64 = 0.03;
 /// Range of an alpha that is a map, of white.
 const VARIES: f64 = 0.1;

@@ -4,7 +4,8 @@
 //! n = 2 (r, g, b) − 1,   |n| = 1,   n_z > 0
 //! ```
 //!
-//! Colours of a photograph lie all over the cube; a picture of which nearly all pixels lie near that half sphere is a normal map.
+//! Colours of a photograph lie all over the cube; a picture of which nearly all pixels lie near
+//! that half sphere is a normal map.
 
 use super::{Picture, Samples};
 
@@ -12,7 +13,8 @@ use super::{Picture, Samples};
 const LENGTH: f64 = 0.15;
 /// Smallest component out of the surface.
 const OUTWARD: f64 = 0.1;
-/// Factor by which the mean of all must point further out of the surface than along it. A light grey, stored as three equal colours, points along all three
+/// Factor by which the mean of all must point further out of the surface than along it. A light
+/// grey, stored as three equal colours, points along all three
 const UPRIGHT: f64 = 2.0;
 /// Part of the pixels that must be such vectors.
 const MOST: f64 = 0.95;
@@ -42,7 +44,8 @@ fn is_normal([x, y, z]: [f64; 3]) -> bool {
     (length - 1.0).abs() <= LENGTH && z >= OUTWARD
 }
 
-/// Red, green and blue of a pixel as −1…1; floating point pictures hold such numbers or 0…1, and are taken as the latter.
+/// Red, green and blue of a pixel as −1…1; floating point pictures hold such numbers or 0…1, and
+/// are taken as the latter.
 fn vector(picture: &Picture, pixel: usize) -> [f64; 3] {
     let first = pixel * picture.channels;
     [0, 1, 2].map(|channel| {

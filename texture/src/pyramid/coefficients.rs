@@ -1,10 +1,11 @@
 //! The sub-bands of one image, to be read and edited.
 
-/// The sub-bands of one image in the order of [`super::Pyramid::subbands`]; empty by default, to be filled by
-/// [`super::Pyramid::split_into`].
+/// The sub-bands of one image in the order of [`super::Pyramid::subbands`]; empty by default, to be
+/// filled by [`super::Pyramid::split_into`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coefficients {
-    /// One sub-band after the other: in one piece, allocators keep the memory from one image to the next.
+    /// One sub-band after the other: in one piece, allocators keep the memory from one image to the
+    /// next.
     pub(super) values: Vec<f64>,
     /// Ends of the sub-bands.
     pub(super) ends: Vec<usize>,

@@ -3,7 +3,8 @@
 use super::Kind;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Which part of Ψ depends on r alone; `lows` is how often the low-pass has been applied before the band.
+/// Which part of Ψ depends on r alone; `lows` is how often the low-pass has been applied before the
+/// band.
 pub(super) fn radial(kind: Kind, lows: usize, r: f64) -> f64 {
     match kind {
         Kind::HighResidual => high(r),

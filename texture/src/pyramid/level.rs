@@ -1,12 +1,13 @@
-//! Rectangles of low frequencies: which frequencies of an image a level keeps, and where they lie on its own grid.
+//! Rectangles of low frequencies: which frequencies of an image a level keeps, and where they lie
+//! on its own grid.
 
 use super::Sampling;
 use crate::fft2::{RealFft2, angular_frequency};
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex64;
 
-/// A rectangle of low frequencies and the grid on which they are sampled. Of the frequencies along u only those
-/// from zero up count: the others follow, as images are real.
+/// A rectangle of low frequencies and the grid on which they are sampled. Of the frequencies along
+/// u only those from zero up count: the others follow, as images are real.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
     /// Frequencies along u that are kept: zero and up.
@@ -29,14 +30,16 @@ impl Level {
         let side = |n: usize| n.div_ceil(1 << halvings);
         let crop = [side(width), side(height)];
         let [w, h] = if sampling == Sampling::Full { [width, height] } else { crop };
-        // Filters are zero at and above the Nyquist frequency of a crop that is not the whole spectrum.
+        // Filters are zero at and above the Nyquist frequency of a crop that is not the whole
+        // spectrum.
         let columns = if halvings == 0 { width / 2 + 1 } else { crop[0].div_ceil(2) };
         let upper = if halvings == 0 { height / 2 + 1 } else { crop[1].div_ceil(2) };
         let rows = [upper, crop[1].div_ceil(2) - 1];
         Self { columns, rows, height, fft: RealFft2::new(planner, w, h) }
     }
 
-    /// A column of the level's spectrum: that of the image where it is kept, times the filter and `scale`.
+    /// A column of the level's spectrum: that of the image where it is kept, times the filter and
+    /// `scale`.
     pub fn filtered(
         &self,
         kx: usize,
@@ -80,8 +83,8 @@ impl Level {
         add(&mut to[self.height - lower..], &column[column.len() - lower..], &filter[upper..]);
     }
 
-    /// The kept frequencies of an image `width` wide in the order of the filters: place in half the spectrum of
-    /// the image and angular frequency along u and v.
+    /// The kept frequencies of an image `width` wide in the order of the filters: place in half the
+    /// spectrum of the image and angular frequency along u and v.
     pub fn frequencies(&self, width: usize) -> impl Iterator<Item = (usize, [f64; 2])> {
         let ([upper, lower], height) = (self.rows, self.height);
         (0..self.columns).flat_map(move |kx| {

@@ -1,16 +1,19 @@
-//! The sand around a contact, as a patch shows it: without the print of the contact's own tool, which is filled up to the level around it,
-//! because it moves along with the tool and is not what the tool meets next.
+//! The sand around a contact, as a patch shows it: without the print of the contact's own tool,
+//! which is filled up to the level around it, because it moves along with the tool and is not what
+//! the tool meets next.
 //!
 //! ```text
 //! h(x) = g(x) + w(a) (b(x) − g(x))         a: how far from the tool's way, w: 0 on it, 1 beyond the heap
 //! g(x) = min(level(s), sand(x) + d(F))     s: how far along it
 //! b(x) = max(sand(x), g(x))                heaps beside the way stay what they are
 //! ```
-//! A tool that meets untouched sand stands d(F) below its level; in a furrow that is as deep already it stands on the bottom, and in a deeper
-//! one deeper: sand that was pressed once carries at once.
+//! A tool that meets untouched sand stands d(F) below its level; in a furrow that is as deep
+//! already it stands on the bottom, and in a deeper one deeper: sand that was pressed once carries
+//! at once.
 //!
-//! The way is as long as a tool comes while a patch is in use, ahead and behind: at 0.5 m/s a tool is 8 mm further on a frame later, where a
-//! circle about its old place would show it its own bow wave ahead, and its own furrow if it has turned back.
+//! The way is as long as a tool comes while a patch is in use, ahead and behind: at 0.5 m/s a tool
+//! is 8 mm further on a frame later, where a circle about its old place would show it its own bow
+//! wave ahead, and its own furrow if it has turned back.
 
 use super::patch::{PATCH, Patch};
 use super::pose::{FRAMES_PER_S, Pose};
@@ -18,7 +21,8 @@ use crate::moving_picture::MovingPicture;
 
 /// Points of the circle on which the level is looked for.
 const POINTS: usize = 32;
-/// For how many frames a patch is in use: it waits for one, fades in for one, and is there until the next has faded in.
+/// For how many frames a patch is in use: it waits for one, fades in for one, and is there until
+/// the next has faded in.
 const FRAMES_IN_USE: f64 = 3.0;
 /// Places on a way where its level is looked for, behind the tool, at it and ahead.
 const POSTS: usize = 9;
@@ -81,8 +85,9 @@ impl Way {
 }
 
 impl Around<'_> {
-    /// Writes a patch of sand whose cells lie at `cell_at(position)` and whose level around a place is `level_at(position)`, both metres
-    /// above the bottom, with the print filled up to `level_m`.
+    /// Writes a patch of sand whose cells lie at `cell_at(position)` and whose level around a place
+    /// is `level_at(position)`, both metres above the bottom, with the print filled up to
+    /// `level_m`.
     pub(super) fn write(
         &self,
         level_m: f64,
@@ -117,9 +122,10 @@ impl Around<'_> {
     }
 }
 
-/// Median height on a circle outside the heap, metres: the level of what is not yet disturbed, because a
-/// groove through the middle takes up less than half of the circle. (A mean sinks with the tool's own
-/// groove: a finger that stops and settles back a little then digs 4 to 9 % too deep.)
+/// Median height on a circle outside the heap, metres: the level of what is not yet disturbed,
+/// because a groove through the middle takes up less than half of the circle. (A mean sinks with
+/// the tool's own groove: a finger that stops and settles back a little then digs 4 to 9 % too
+/// deep.)
 pub(super) fn level_around(
     cell_m: f64,
     at: [f64; 2],
@@ -135,7 +141,8 @@ pub(super) fn level_around(
     0.5 * (heights[POINTS / 2 - 1] + heights[POINTS / 2])
 }
 
-/// Level of the sand around a place as the simulation showed it last, metres above the bottom; none before it ran.
+/// Level of the sand around a place as the simulation showed it last, metres above the bottom; none
+/// before it ran.
 pub(super) fn seen_level_m(picture: &MovingPicture, position_m: [f64; 2], radius_m: f64) -> Option<f64> {
     let here_m = picture.height_at(position_m)?;
     let height_at = |at| picture.height_at(at).unwrap_or(here_m);

@@ -13,9 +13,10 @@
 //! | g | [`Buried::hardness`] | over the top sand's, as a layer's is |
 //! | r | `tip_radius_m` of the law | a sphere meets a stone before its own middle is over it |
 //!
-//! Source: the sand paper names shells and stones as future work (§6); ours. An object is a paraboloid, because a sphere that rolls over one
-//! is a paraboloid again, and because its flank goes on downwards without an edge that a deep tool would fall off. It does not move, and
-//! does not break. Grains in the air, which the paper names beside it, are left out.
+//! Source: the sand paper names shells and stones as future work (§6); ours. An object is a
+//! paraboloid, because a sphere that rolls over one is a paraboloid again, and because its flank
+//! goes on downwards without an edge that a deep tool would fall off. It does not move, and does
+//! not break. Grains in the air, which the paper names beside it, are left out.
 
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
@@ -67,7 +68,8 @@ impl Buried {
         Ok(())
     }
 
-    /// Obstacle that a tool with an underside of `tip_radius_m` meets of it below a place where the sand lies `above_m` over the untouched bed.
+    /// Obstacle that a tool with an underside of `tip_radius_m` meets of it below a place where the
+    /// sand lies `above_m` over the untouched bed.
     #[must_use]
     pub fn met(&self, position_m: [f64; 2], above_m: f64, tip_radius_m: f64) -> Met {
         let slope = [0, 1].map(|a| {
@@ -108,7 +110,8 @@ mod tests {
 
     #[test]
     fn a_ball_meets_it_where_it_touches_it_first() {
-        // Near its top a stone of these axes is a sphere of 8 mm; a ball of 5 mm on it rides on one of 13 mm.
+        // Near its top a stone of these axes is a sphere of 8 mm; a ball of 5 mm on it rides on one
+        // of 13 mm.
         let stone = Buried { half_m: [0.008; 2], ..STONE };
         let met = stone.met([0.052, 0.03], 0.0, 0.005);
         let exact_m = 0.002 + 0.013 - (0.013f64.powi(2) - 0.002f64.powi(2)).sqrt();

@@ -5,23 +5,24 @@
 //! Δm = ½ e  from the higher to the lower one, where e is more than ¼° of slope
 //! ```
 //!
-//! Source: the sand paper §3.2, whose rule gives each lower neighbour Δm_i = Δm · e_i / Σ e of
-//! Δm = c · max e, all at once and c left open. (The printed "m_i" in the share is the difference to the
-//! neighbour, not its height; diagonal neighbours are √2 further away.) With one neighbour too low, ours
-//! is the same with c = ½; with several, they are served one after another instead of in shares.
+//! Source: the sand paper §3.2, whose rule gives each lower neighbour Δm_i = Δm · e_i / Σ e of Δm =
+//! c · max e, all at once and c left open. (The printed "m_i" in the share is the difference to the
+//! neighbour, not its height; diagonal neighbours are √2 further away.) With one neighbour too low,
+//! ours is the same with c = ½; with several, they are served one after another instead of in
+//! shares.
 //!
 //! Why: pairs of cells that do not touch each other can slide at once, so that a whole row slides
-//! against the next one, or against itself shifted by a cell, in vector registers and without branches
-//! (`row`): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
-//! field settles 15 to 25 times faster than by repeating the document's pass over the whole grid until
-//! nothing moves. Cones come out rounder than the document's: within 2.6 % of the ideal radius along the
-//! axes and the diagonals (10 % with shares and cells taken row by row).
+//! against the next one, or against itself shifted by a cell, in vector registers and without
+//! branches (`row`): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to
+//! 17. A random field settles 15 to 25 times faster than by repeating the document's pass over the
+//! whole grid until nothing moves. Cones come out rounder than the document's: within 2.6 % of the
+//! ideal radius along the axes and the diagonals (10 % with shares and cells taken row by row).
 //!
-//! Sand is cut into tiles of 64 × 32 cells. Each remembers which of its rows may have become too steep,
-//! a bit a row, and only those are looked at. Rows, and what is served first within them, turn
-//! with every pass, so that sequential work has no preferred direction. A slope counts as settled at
-//! θ + ¼°, where another hundred passes would only creep. All arithmetic is in whole numbers: the
-//! same sand gives the same sand everywhere.
+//! Sand is cut into tiles of 64 × 32 cells. Each remembers which of its rows may have become too
+//! steep, a bit a row, and only those are looked at. Rows, and what is served first within them,
+//! turn with every pass, so that sequential work has no preferred direction. A slope counts as
+//! settled at θ + ¼°, where another hundred passes would only creep. All arithmetic is in whole
+//! numbers: the same sand gives the same sand everywhere.
 
 mod row;
 
@@ -192,8 +193,8 @@ impl Erosion {
         looked_at
     }
 
-    /// Shows the rectangles of cells in which sand has slid since the last call, first and last column, first and last row; some may not
-    /// have changed.
+    /// Shows the rectangles of cells in which sand has slid since the last call, first and last
+    /// column, first and last row; some may not have changed.
     pub fn slid(&mut self, mut see: impl FnMut([usize; 2], [usize; 2])) {
         for (tile, rows) in self.slid.iter_mut().enumerate().filter(|(_, rows)| **rows != 0) {
             let [x, y] = [tile % self.tile_columns * TILE, tile / self.tile_columns * TILE_ROWS];
@@ -205,7 +206,8 @@ impl Erosion {
         }
     }
 
-    /// Marks the rows that a tile's slides may have made too steep, in it and in the tiles around it.
+    /// Marks the rows that a tile's slides may have made too steep, in it and in the tiles around
+    /// it.
     fn wake(&mut self, tile: usize, rows: u32, slides: &Slides) {
         let (tx, ty) = (tile % self.tile_columns, tile / self.tile_columns);
         let last_row = 1 << (rows - 1);

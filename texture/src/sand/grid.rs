@@ -1,14 +1,15 @@
 //! Heights of sand as whole numbers of 2⁻³⁰ m (0.93 nm).
 //!
-//! Every move takes a whole number from one cell and gives it to others, so that the volume does not
-//! drift by a single unit however long the sand is played with (floating point drifts by 1e-6).
+//! Every move takes a whole number from one cell and gives it to others, so that the volume does
+//! not drift by a single unit however long the sand is played with (floating point drifts by 1e-6).
 //! The grid is surrounded by a wall one cell thick that nothing slides over.
 
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
 
-/// Columns of a tile of the erosion: wide enough that a vector is not read back before it has been written.
+/// Columns of a tile of the erosion: wide enough that a vector is not read back before it has been
+/// written.
 pub const TILE: usize = 64;
 
 /// Units of height in a metre.
@@ -29,7 +30,8 @@ pub struct SandGrid {
     columns: usize,
     rows: usize,
     cell_m: f64,
-    /// Rows of heights with a wall around them, and walls on the right up to a whole number of tiles.
+    /// Rows of heights with a wall around them, and walls on the right up to a whole number of
+    /// tiles.
     pub(super) heights: Vec<i32>,
 }
 

@@ -1,7 +1,9 @@
-//! Hand-over: the rings between the audio half's end of the sand and the simulation's, and what a contact reads meanwhile.
+//! Hand-over: the rings between the audio half's end of the sand and the simulation's, and what a
+//! contact reads meanwhile.
 //!
-//! Both directions are lock-free rings of a fixed size whose ends never wait: a full ring drops the pose (the next one says more), a
-//! missing patch leaves the old one in use. Patches are boxes made beforehand that travel in a circle, so that neither side allocates.
+//! Both directions are lock-free rings of a fixed size whose ends never wait: a full ring drops the
+//! pose (the next one says more), a missing patch leaves the old one in use. Patches are boxes made
+//! beforehand that travel in a circle, so that neither side allocates.
 
 use super::law::SandLaw;
 use super::patch::Patch;
@@ -10,8 +12,8 @@ use super::worker::{Far, NewEnds};
 use crate::exclusive::Exclusive;
 use crate::height_field::MAX_BLOCK;
 
-/// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
-/// one under way.
+/// Patches in circulation for every contact, besides the one it landed on: one that fades out, one
+/// that fades in, one that waits, one under way.
 pub(super) const PATCHES_A_CONTACT: usize = 4;
 
 /// Place where the simulation runs.
@@ -90,8 +92,8 @@ impl Slot {
 }
 
 impl Slot {
-    /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way, and how
-    /// much sand the contact displaces, m³ a metre of its way.
+    /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way,
+    /// and how much sand the contact displaces, m³ a metre of its way.
     pub(super) fn turn_over(
         &mut self,
         sample: u64,

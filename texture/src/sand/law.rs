@@ -17,18 +17,18 @@
 //! | β | [`SandLaw::bearing`] | – | the tool's |
 //! | cap | [`SandLaw::cap_n`] | 12 and 20 N | 20 N |
 //!
-//! Source: the sand paper §4.1, equations 1 and 3, on a square of 2 units with a sphere of 0.01. Its
-//! unit is taken as 0.5 m (ours), so that the sphere is a fingertip of 5 mm; 0.006 and 0.01 units
-//! then give the 3.005 N and 5.013 N of its constants. What we read differently: as printed, equation
-//! 1 is −k_s e^{k_c d} − 1, a jump of 1001 N at the surface; and the friction is horizontal (the text
-//! says vertical). What we added, all ours and simple: wetness w multiplies k_s by 1 + 2w and raises
-//! the talus angle by 20° · w (damp sand holds a steeper slope); layers multiply the hardness below
-//! their depth; grains: a share of the displaced grains hits another one at the tool's speed. β is our
-//! answer to the authors' first open point, repulse by the area in the sand: they drop the area, because
-//! their tool is always the same sphere; here a wider tool is carried by more sand. It is measured at the
-//! depth of their 3 N, so that their sphere keeps their constants and d(F) stays a closed form. There is
-//! no Coulomb friction beside F_f, and grains finer than a cell do not push a tool sideways: it rides on
-//! many of them at once.
+//! Source: the sand paper §4.1, equations 1 and 3, on a square of 2 units with a sphere of 0.01.
+//! Its unit is taken as 0.5 m (ours), so that the sphere is a fingertip of 5 mm; 0.006 and 0.01
+//! units then give the 3.005 N and 5.013 N of its constants. What we read differently: as printed,
+//! equation 1 is −k_s e^{k_c d} − 1, a jump of 1001 N at the surface; and the friction is
+//! horizontal (the text says vertical). What we added, all ours and simple: wetness w multiplies
+//! k_s by 1 + 2w and raises the talus angle by 20° · w (damp sand holds a steeper slope); layers
+//! multiply the hardness below their depth; grains: a share of the displaced grains hits another
+//! one at the tool's speed. β is our answer to the authors' first open point, repulse by the area
+//! in the sand: they drop the area, because their tool is always the same sphere; here a wider tool
+//! is carried by more sand. It is measured at the depth of their 3 N, so that their sphere keeps
+//! their constants and d(F) stays a closed form. There is no Coulomb friction beside F_f, and
+//! grains finer than a cell do not push a tool sideways: it rides on many of them at once.
 
 use super::buried::{Buried, MAX_BURIED, Met, first_met};
 use crate::answer::capped;
@@ -53,9 +53,11 @@ pub const CAP_N: f64 = 20.0;
 pub const BEARING_DEPTH_M: f64 = 0.003;
 /// The document's tool, metres.
 pub const REFERENCE_RADIUS_M: f64 = 0.005;
-/// No sand carries more, N: a depth or an exponent beyond all sand keeps a direction, which infinity does not.
+/// No sand carries more, N: a depth or an exponent beyond all sand keeps a direction, which
+/// infinity does not.
 const MOST_N: f64 = 1e9;
-/// Nothing is buried farther away, m; beyond, and at places that are no numbers, there is sand alone.
+/// Nothing is buried farther away, m; beyond, and at places that are no numbers, there is sand
+/// alone.
 const FARTHEST_M: f64 = 1e6;
 /// Nothing drags faster, m/s.
 const FASTEST_M_S: f64 = 1e6;
@@ -88,9 +90,11 @@ pub struct SandLaw {
     pub grain_m: f64,
     /// Largest force, N, above 0.
     pub cap_n: f64,
-    /// β: how much more the tool is carried than a sphere of 5 mm. A bed of sand sets it by its [tool](super::Tool::bearing).
+    /// β: how much more the tool is carried than a sphere of 5 mm. A bed of sand sets it by its
+    /// [tool](super::Tool::bearing).
     pub bearing: f64,
-    /// Radius of the tool's underside, metres, 0 for a point; a bed of sand sets it by its [tool](super::Tool::tip_radius_m).
+    /// Radius of the tool's underside, metres, 0 for a point; a bed of sand sets it by its
+    /// [tool](super::Tool::tip_radius_m).
     pub tip_radius_m: f64,
     /// Stones and shells in it, unused ones `None`.
     pub buried: [Option<Buried>; MAX_BURIED],
@@ -192,13 +196,15 @@ impl SandLaw {
         top + libm::log1p(left / (hardness * self.wet_stiffness_n() * libm::exp(k * top))) / k
     }
 
-    /// Law under another tool, by its [bearing](super::Tool::bearing) and the [radius of its underside](super::Tool::tip_radius_m).
+    /// Law under another tool, by its [bearing](super::Tool::bearing) and the [radius of its
+    /// underside](super::Tool::tip_radius_m).
     #[must_use]
     pub fn under(self, bearing: f64, tip_radius_m: f64) -> Self {
         Self { bearing, tip_radius_m, ..self }
     }
 
-    /// Obstacle that the tool meets below a place where the sand lies `above_m` over the untouched bed.
+    /// Obstacle that the tool meets below a place where the sand lies `above_m` over the untouched
+    /// bed.
     #[must_use]
     pub fn met(&self, position_m: [f64; 2], above_m: f64) -> Option<Met> {
         first_met(&self.buried, position_m, above_m, self.tip_radius_m)
@@ -228,7 +234,8 @@ impl SandLaw {
         met.top_m + libm::log1p(carried_by_it_n / stiff_n) / k
     }
 
-    /// Push aside on a tool that is carried with `force_n` by what is met, along u and v, for each newton.
+    /// Push aside on a tool that is carried with `force_n` by what is met, along u and v, for each
+    /// newton.
     #[must_use]
     pub fn push_per_n(&self, met: Option<&Met>, force_n: f64) -> [f64; 2] {
         let Some(met) = met.filter(|_| force_n > 0.0) else { return [0.0; 2] };
@@ -236,7 +243,8 @@ impl SandLaw {
         met.slope.map(|slope| share * slope)
     }
 
-    /// [`answer_n`](Self::answer_n) at a place of the untouched bed: over its stones and shells too.
+    /// [`answer_n`](Self::answer_n) at a place of the untouched bed: over its stones and shells
+    /// too.
     #[must_use]
     pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
         if !position_m.iter().all(|x| x.abs() <= FARTHEST_M) {
@@ -249,8 +257,8 @@ impl SandLaw {
         capped([u, v, repulse_n], self.cap_n)
     }
 
-    /// The force on a tool that stands `depth_m` deep and moves, N along u, v and out of the sand: what the document's loop
-    /// returns to the device.
+    /// The force on a tool that stands `depth_m` deep and moves, N along u, v and out of the sand:
+    /// what the document's loop returns to the device.
     #[must_use]
     pub fn answer_n(&self, depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
         let repulse_n = self.force_n(depth_m);

@@ -1,11 +1,12 @@
 //! The sand and the tools dragged through it, one frame (1/60 s) after another.
 //!
-//! In a frame every contact's tool goes from where it was to where it is now, a cell at a time, in as many parts as there are
-//! passes of sliding, so that a fast tool leaves no scallops of a frame's length. Its
-//! depth is the one at which the sand carries the contact's normal force (`law`), below the
-//! level of the sand around it (the median on a circle outside the heap). Then the sand slides
-//! for as many passes as the frame's budget of cells allows; where a tool stands it is a wall, so
-//! that nothing trickles into the cut it fills. A contact that was not told of in a frame is lifted.
+//! In a frame every contact's tool goes from where it was to where it is now, a cell at a time, in
+//! as many parts as there are passes of sliding, so that a fast tool leaves no scallops of a
+//! frame's length. Its depth is the one at which the sand carries the contact's normal force
+//! (`law`), below the level of the sand around it (the median on a circle outside the heap). Then
+//! the sand slides for as many passes as the frame's budget of cells allows; where a tool stands it
+//! is a wall, so that nothing trickles into the cut it fills. A contact that was not told of in a
+//! frame is lifted.
 
 mod drag;
 mod view;
@@ -74,7 +75,8 @@ pub struct SandFigures {
     pub drift_units: i64,
     /// Steepest slope now, degrees.
     pub max_slope_deg: f64,
-    /// Deepest that a tool stood below the untouched bed, metres: what was felt, whatever slid into the print since.
+    /// Deepest that a tool stood below the untouched bed, metres: what was felt, whatever slid into
+    /// the print since.
     pub print_m: f64,
 }
 
@@ -154,7 +156,8 @@ impl SandSimulation {
         Ok(sand)
     }
 
-    /// Makes room for contacts numbered below `contacts`, if there is less; there is room for those of [`Setup::default`].
+    /// Makes room for contacts numbered below `contacts`, if there is less; there is room for those
+    /// of [`Setup::default`].
     pub fn make_room(&mut self, contacts: usize) {
         if contacts > self.tracks.len() {
             let track = Track { level_m: self.depth_m, ..Track::default() };
@@ -177,8 +180,8 @@ impl SandSimulation {
         self.erosion.activate_all();
     }
 
-    /// Another force law; when the wetness is another, so is the talus angle, and what is now too steep
-    /// slides.
+    /// Another force law; when the wetness is another, so is the talus angle, and what is now too
+    /// steep slides.
     pub fn set_law(&mut self, law: SandLaw) {
         if law.check().is_err() {
             return;
@@ -293,8 +296,8 @@ impl SandSimulation {
         level_around(&self.grid, position_m, radius_m)
     }
 
-    /// Level that a contact would sink from where it lands, metres above the bottom, and the radius of
-    /// its print.
+    /// Level that a contact would sink from where it lands, metres above the bottom, and the radius
+    /// of its print.
     fn landing(&self, pose: &Pose) -> (f64, f64) {
         let radius_m = self.tool.print_radius_m(self.law.depth_m(pose.normal_force_n));
         (level_around(&self.grid, pose.position_m, radius_m), radius_m)

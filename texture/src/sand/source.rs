@@ -5,19 +5,21 @@
 //! | audio half, every 64 samples | sends the contact's pose, takes the newest patch, gives the old one back |
 //! | simulation, 60 times a second | takes the poses, moves tools, lets sand slide, sends a patch a contact |
 //!
-//! Neither end ever waits (`hand_over`). From one patch to the next the height fades over a frame on absolute samples.
+//! Neither end ever waits (`hand_over`). From one patch to the next the height fades over a frame
+//! on absolute samples.
 //!
 //! *Synchronous* sand ([`SandSource::synchronous`]) keeps the simulation in the source and runs a
 //! frame wherever a contact's touch crosses a multiple of the frame length on the absolute sample
 //! grid: renders are reproducible and do not depend on how time is split into blocks. It is for
 //! rendering offline; a frame may take a millisecond.
 //!
-//! Height = the sand of the patch + grains (solid noise finer than a cell). A contact sinks as deep as its
-//! print, d(F) of the [law](super::law), but not below the bottom of the bed; its drag is the answer along the
-//! surface, instead of Coulomb friction and of the grains' slope, and grain impacts that to a touch. A tip that stands
-//! at a depth is carried by the law at that depth below the sand as it lies around it. A contact reads the sand it lands on until its first patch has faded in; a patch
-//! that shows nothing new does not fade, and once none fades the sand does not stir under a resting
-//! contact, which may sleep.
+//! Height = the sand of the patch + grains (solid noise finer than a cell). A contact sinks as deep
+//! as its print, d(F) of the [law](super::law), but not below the bottom of the bed; its drag is
+//! the answer along the surface, instead of Coulomb friction and of the grains' slope, and grain
+//! impacts that to a touch. A tip that stands at a depth is carried by the law at that depth below
+//! the sand as it lies around it. A contact reads the sand it lands on until its first patch has
+//! faded in; a patch that shows nothing new does not fade, and once none fades the sand does not
+//! stir under a resting contact, which may sleep.
 
 use super::around::{Around, level_around, seen_level_m};
 use super::grid::SandPicture;
@@ -43,8 +45,9 @@ use asperity_dsp::DesignError;
 use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A tip's depth is told below the sand so many radii of its print around it: beyond the heap that it pushes up itself, which would tell
-/// on its own force by 2 % (twice as wide as where the tool's level is looked for).
+/// A tip's depth is told below the sand so many radii of its print around it: beyond the heap that
+/// it pushes up itself, which would tell on its own force by 2 % (twice as wide as where the tool's
+/// level is looked for).
 const WIDE: f64 = 2.0;
 
 /// A surface of sand.
@@ -165,8 +168,8 @@ impl SandSource {
         }
     }
 
-    /// Lifts all tools, settles the sand and says what is left: volumes, slope, picture. `None` when
-    /// the simulation is elsewhere ([`super::SandThread::stop`] gives it back).
+    /// Lifts all tools, settles the sand and says what is left: volumes, slope, picture. `None`
+    /// when the simulation is elsewhere ([`super::SandThread::stop`] gives it back).
     pub fn finish(&mut self) -> Option<(SandFigures, SandPicture)> {
         let Link::Here(simulation) = &mut self.link else { return None };
         simulation.settle();
@@ -184,7 +187,8 @@ impl SandSource {
 
     /// Tells the simulation about a touch and takes what it has to say.
     fn exchange(&mut self, touch: &Touch) {
-        // Whoever was lifted, or comes here with a surface that was replaced, lands without being announced.
+        // Whoever was lifted, or comes here with a surface that was replaced, lands without being
+        // announced.
         if self.slots.get(touch.contact).is_some_and(|slot| slot.next_touch != Some(touch.sample)) {
             self.land(touch);
         }
@@ -234,7 +238,8 @@ impl SandSource {
         }
     }
 
-    /// The drag of the law, and what a stone's flank pushes, in the place of what slopes and friction would push.
+    /// The drag of the law, and what a stone's flank pushes, in the place of what slopes and
+    /// friction would push.
     fn answer(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let law = self.law.target();
         for (i, velocity_m_s) in path.velocity_m_s.iter().enumerate().take(MAX_BLOCK) {

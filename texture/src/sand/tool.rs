@@ -5,11 +5,11 @@
 //! f(r) = sin(r²) − 0.53, r from 1.2 (at the cut) to 1.607 (where f falls to 0); cells ahead of a
 //! moving tool get up to twice, cells behind it down to none.
 //!
-//! Source: the sand paper §3.1. What we read differently: both printed inequalities are reversed, and
-//! even corrected the two halves of f do not cancel (+0.33 and +1.16), so the printed sum of zero
-//! cannot hold; ours keeps the volume by counting it. What we changed: the negative filter is the
-//! tool's own lower surface (a sphere's, or any height map), the rim is found by growing the cut's
-//! outline and not by a radius, and the weights lean forwards (bulldozing).
+//! Source: the sand paper §3.1. What we read differently: both printed inequalities are reversed,
+//! and even corrected the two halves of f do not cancel (+0.33 and +1.16), so the printed sum of
+//! zero cannot hold; ours keeps the volume by counting it. What we changed: the negative filter is
+//! the tool's own lower surface (a sphere's, or any height map), the rim is found by growing the
+//! cut's outline and not by a radius, and the weights lean forwards (bulldozing).
 
 use super::grid::{HIGHEST, SandGrid, UNITS_PER_M, WALL};
 use super::law::{BEARING_DEPTH_M, REFERENCE_RADIUS_M};
@@ -90,13 +90,15 @@ impl Tool {
         }
     }
 
-    /// Radius of its underside about the contact, metres: what it is to a stone. A picture's is taken for a point.
+    /// Radius of its underside about the contact, metres: what it is to a stone. A picture's is
+    /// taken for a point.
     #[must_use]
     pub fn tip_radius_m(&self) -> f64 {
         if let Self::Sphere { radius_m } = self { *radius_m } else { 0.0 }
     }
 
-    /// Ratio of its bearing to the source's sphere, by the area of its print; see the [law](super::law).
+    /// Ratio of its bearing to the source's sphere, by the area of its print; see the
+    /// [law](super::law).
     #[must_use]
     pub fn bearing(&self) -> f64 {
         let reference = Self::Sphere { radius_m: REFERENCE_RADIUS_M };
@@ -225,7 +227,8 @@ impl Press {
                 }
                 let mut lower_m = tool.lower_m([dx, dy]);
                 if holds_contact {
-                    // So that the print is as deep as the tool stands, wherever within a cell that is.
+                    // So that the print is as deep as the tool stands, wherever within a cell that
+                    // is.
                     lower_m = lower_m.min(tool.lower_m([0.0; 2]));
                 }
                 let lower = (tip_m + lower_m) * UNITS_PER_M;

@@ -1,6 +1,7 @@
 //! The cut of a surface through the block of noise.
 
-/// The plane in which a surface cuts the block of noise: position = origin + u · u_axis + v · v_axis.
+/// The plane in which a surface cuts the block of noise: position = origin + u · u_axis + v ·
+/// v_axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidCut {
     /// Place of the surface's (0, 0) in the block, metres.
@@ -12,7 +13,8 @@ pub struct SolidCut {
 }
 
 impl SolidCut {
-    /// Along the lattice, through its origin: the document's own use with the tool in the plane z = 0.
+    /// Along the lattice, through its origin: the document's own use with the tool in the plane z =
+    /// 0.
     pub const LATTICE: Self = Self { origin_m: [0.0; 3], u_axis: [1.0, 0.0, 0.0], v_axis: [0.0, 1.0, 0.0] };
 
     /// At a slant to all lattice axes, so that no straight stroke meets the lattice at regular
@@ -23,8 +25,9 @@ impl SolidCut {
         v_axis: [-0.680_225_349_253_427_1, 0.659_917_333_115_655_6, 0.319_065_177_803_187_8],
     };
 
-    /// The cut of a plane of a body into the block that the body is made of: the block lies in the body as [`Self::SLANTED`] lies in it, so
-    /// that faces along the body's axes do not meet the lattice along its own, and every face of a body is cut from the same block.
+    /// The cut of a plane of a body into the block that the body is made of: the block lies in the
+    /// body as [`Self::SLANTED`] lies in it, so that faces along the body's axes do not meet the
+    /// lattice along its own, and every face of a body is cut from the same block.
     ///
     /// `u_axis` and `v_axis` are unit vectors at a right angle.
     #[must_use]
@@ -36,7 +39,8 @@ impl SolidCut {
         }
     }
 
-    /// The point of the block at a place of the body that is made of it, or a direction of the block along one of the body, metres.
+    /// The point of the block at a place of the body that is made of it, or a direction of the
+    /// block along one of the body, metres.
     #[inline]
     #[must_use]
     pub fn in_body(place_m: [f64; 3]) -> [f64; 3] {

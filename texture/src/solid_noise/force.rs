@@ -4,8 +4,8 @@
 //! F = L · n_p(T · x) along the law's direction, no more than the cap, − b v        while F_n > 0, else 0
 //! ```
 //!
-//! The document returns a texture force only when the tool penetrates the object, and adds it to the contact and friction forces; the
-//! relief of the same noise then does not push a second time.
+//! The document returns a texture force only when the tool penetrates the object, and adds it to
+//! the contact and friction forces; the relief of the same noise then does not push a second time.
 
 use super::{ForceDirection, SolidNoise, SolidNoiseParameters};
 use crate::answer::AnswerAt;
@@ -13,7 +13,8 @@ use crate::height_field::{MAX_BLOCK, NO_TOUCH_N, PathBlock, SurfaceBlock};
 
 impl SolidNoise {
     /// Force of the texture and the medium on a tool at `position_m`: along u, v and out of the
-    /// surface, newtons; none for a tool that does not press. `footprint_m` is the distance between two readings.
+    /// surface, newtons; none for a tool that does not press. `footprint_m` is the distance between
+    /// two readings.
     #[must_use]
     pub fn force_n(
         &self,

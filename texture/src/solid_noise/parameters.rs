@@ -69,8 +69,8 @@ pub struct SolidNoiseParameters {
     pub viscosity_n_s_m: f64,
     /// Coulomb friction coefficient, at or above 0.
     pub friction: f64,
-    /// Speed of the block past the surface, m/s along u, along v and out of the surface; the last makes the texture boil in its
-    /// place.
+    /// Speed of the block past the surface, m/s along u, along v and out of the surface; the last
+    /// makes the texture boil in its place.
     pub flow_m_s: [f64; 3],
 }
 

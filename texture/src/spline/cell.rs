@@ -35,7 +35,8 @@ pub(super) struct Cell {
     pub(super) powers: [[f64; 4]; 4],
 }
 
-/// Four rows of B-spline coefficients c₀ … c₃ → the powers 0 … 3 of the fraction from c₁ to c₂, in every column.
+/// Four rows of B-spline coefficients c₀ … c₃ → the powers 0 … 3 of the fraction from c₁ to c₂, in
+/// every column.
 #[inline(always)]
 fn to_powers<V: Rows>(v: V, c: [V::Lanes; 4]) -> [V::Lanes; 4] {
     let (half, sixth) = (v.splat(0.5), v.splat(1.0 / 6.0));
@@ -61,8 +62,8 @@ impl Cell {
         Self { powers }
     }
 
-    /// Values, and slopes if `SLOPES`, at the places `start..end`, N side by side. What is written beyond `end`, up to whole
-    /// vectors, means nothing.
+    /// Values, and slopes if `SLOPES`, at the places `start..end`, N side by side. What is written
+    /// beyond `end`, up to whole vectors, means nothing.
     #[inline(always)]
     pub(super) fn block<const N: usize, V: Vector<N>, const SLOPES: bool>(
         &self,

@@ -29,8 +29,8 @@ struct OnlyTexel {
     texel: f64,
 }
 
-/// Place along one axis: the texel before, the distance beyond it (0–1), and slope per metre for a slope of
-/// 1 per texel (negative in a mirrored copy, 0 beyond a clamped edge).
+/// Place along one axis: the texel before, the distance beyond it (0–1), and slope per metre for a
+/// slope of 1 per texel (negative in a mirrored copy, 0 beyond a clamped edge).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Place {
     pub(super) texel: f64,
@@ -69,8 +69,8 @@ impl Places {
         (self.axes, self.one_cell) = (None, None);
     }
 
-    /// The cell, column and row, in which all positions lie that are between two corners, if that can be told from the corners; how far beyond it each is,
-    /// is then found and nothing else.
+    /// The cell, column and row, in which all positions lie that are between two corners, if that
+    /// can be told from the corners; how far beyond it each is, is then found and nothing else.
     #[inline(always)]
     pub(super) fn find_in_one_cell<const N: usize, V: Vector<N>>(
         &mut self,
@@ -118,7 +118,8 @@ impl Places {
         }
     }
 
-    /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this grid already.
+    /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this
+    /// grid already.
     #[inline(always)]
     pub(super) fn find(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
         if self.axes == Some(*axes) {
@@ -188,8 +189,8 @@ impl Places {
         end.max(start + 1).min(self.len)
     }
 
-    /// The texel at the end of the block, and how far it is from the one at its beginning: as far again, the next block
-    /// will end. `None` for a finger that stays.
+    /// The texel at the end of the block, and how far it is from the one at its beginning: as far
+    /// again, the next block will end. `None` for a finger that stays.
     #[inline(always)]
     pub(super) fn ahead(&self) -> Option<([f64; 2], [f64; 2])> {
         let last = self.texel(self.len.checked_sub(1)?);
@@ -258,8 +259,9 @@ impl Axis {
         self.texels_per_metre
     }
 
-    /// The texel before all positions between two, of a map that repeats: [`place`](Self::place) grows with the position within a copy of the map, so that
-    /// what is alike at both ends is so between them. None where it differs.
+    /// The texel before all positions between two, of a map that repeats: [`place`](Self::place)
+    /// grows with the position within a copy of the map, so that what is alike at both ends is so
+    /// between them. None where it differs.
     #[inline(always)]
     fn only_texel(&self, low_m: f64, high_m: f64) -> Option<OnlyTexel> {
         let [low, high] = [low_m, high_m].map(|at_m| at_m * self.texels_per_metre - 0.5);
@@ -301,8 +303,8 @@ impl Axis {
         Place { texel, fraction: t - texel, slope }
     }
 
-    /// Index of the first of the four coefficients around a texel and the next. Rounding at the seam may
-    /// reach one texel beyond it, which is there; the clamp is for certainty.
+    /// Index of the first of the four coefficients around a texel and the next. Rounding at the
+    /// seam may reach one texel beyond it, which is there; the clamp is for certainty.
     #[inline]
     pub(super) fn first(&self, texel: f64) -> usize {
         (texel as i64 + PAD as i64 - 1).clamp(0, self.last_first) as usize

@@ -49,7 +49,8 @@ fn blocks_on_every_instruction_set_give_the_bits_of_single_samples() {
                     .collect();
                 let (mut places, mut out) = (Places::new(), Samples::EMPTY);
                 spline.sample_block::<true>(&position_m, None, &mut places, &mut out);
-                // The same where it is known between which corners they lie; the second time as another map of the grid.
+                // The same where it is known between which corners they lie; the second time as
+                // another map of the grid.
                 let bounds_m = bounds(&position_m);
                 let mut known = Samples::EMPTY;
                 places.forget();

@@ -1,7 +1,7 @@
 //! Numbers side by side: what the polynomial of a cell needs, for each instruction set.
 //!
-//! Each operation is one IEEE operation a lane, never fused, so that every set gives the same bits. All inline into a function that
-//! enables the set.
+//! Each operation is one IEEE operation a lane, never fused, so that every set gives the same bits.
+//! All inline into a function that enables the set.
 
 use asperity_dsp::simd::Set;
 use asperity_dsp::simd::fearless_simd::prelude::*;

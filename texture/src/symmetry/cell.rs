@@ -1,18 +1,19 @@
 //! The averaged primitive, the symmetric part of a picture, and what is left of it.
 //!
-//! Thesis §7.2.2: the primitive is the mean over all cells of the picture, the symmetric part repeats it along the
-//! lattice (integers m, n in ℤ; print says ℕ), the residual is picture − symmetric part. Cells are read at fractional texels by cubic
-//! interpolation, because translations are no whole numbers of texels. **Changed:** slow light is taken out before averaging
-//! and left in the residual: cells at the border are cut, so with a gradient each place in the cell would average
-//! different light.
+//! Thesis §7.2.2: the primitive is the mean over all cells of the picture, the symmetric part
+//! repeats it along the lattice (integers m, n in ℤ; print says ℕ), the residual is picture −
+//! symmetric part. Cells are read at fractional texels by cubic interpolation, because translations
+//! are no whole numbers of texels. **Changed:** slow light is taken out before averaging and left
+//! in the residual: cells at the border are cut, so with a gradient each place in the cell would
+//! average different light.
 
 use super::detrend::detrended;
 use super::lattice::{Lattice, length};
 use super::minima::cubic_weights;
 use crate::raster::Raster;
 
-/// The cell is sampled on a square whose side is a multiple of this, so that rotation centres, mirrors and glides at
-/// halves and thirds fall on samples.
+/// The cell is sampled on a square whose side is a multiple of this, so that rotation centres,
+/// mirrors and glides at halves and thirds fall on samples.
 const SIDE_MULTIPLE: usize = 12;
 
 /// Largest side of a sampled cell.
@@ -21,11 +22,11 @@ const LARGEST_SIDE: usize = 240;
 /// The mean of all cells of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AveragedCell {
-    /// The cell in lattice coordinates: sample (i, j) of N × N lies at (i/N)·t1 + (j/N)·t2 from the centre of the picture's
-    /// first texel. Mean 0.
+    /// The cell in lattice coordinates: sample (i, j) of N × N lies at (i/N)·t1 + (j/N)·t2 from the
+    /// centre of the picture's first texel. Mean 0.
     pub cell: Raster,
-    /// Share of the mean cell's variance that is pattern and not noise, 0–1, from the agreement of two
-    /// halves of the cells (odd and even along t1, along t2, or both: the worst).
+    /// Share of the mean cell's variance that is pattern and not noise, 0–1, from the agreement of
+    /// two halves of the cells (odd and even along t1, along t2, or both: the worst).
     pub reliability: f64,
     /// Least number of cells that each sample averages.
     pub repeats: usize,
@@ -52,7 +53,8 @@ pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
 pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCell {
     let longest = length(lattice.t1_px).max(length(lattice.t2_px)).ceil() as usize;
     let side = (longest.div_ceil(SIDE_MULTIPLE).max(2) * SIDE_MULTIPLE).min(LARGEST_SIDE);
-    // Four kinds of cells by the parity of m and n: their agreement tells pattern from noise, whichever way it differs.
+    // Four kinds of cells by the parity of m and n: their agreement tells pattern from noise,
+    // whichever way it differs.
     let mut kinds = [(); 4].map(|()| (vec![0.0; side * side], vec![0_usize; side * side]));
     for (m, n) in cells(lattice, even.width, even.height) {
         let (sums, counts) = &mut kinds[(m.rem_euclid(2) + 2 * n.rem_euclid(2)) as usize];
@@ -87,9 +89,10 @@ pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCe
     }
 }
 
-/// Faithfulness of a pattern to its lattice all over the picture, 0–1: the variance of its mean cell over what texels have
-/// in common with those one translation on. 1 for a strict pattern, however noisy or unevenly lit; near 0 when cells are like
-/// their neighbours but drift, as scales on a bent skin do, and the mean of all of them is a blur.
+/// Faithfulness of a pattern to its lattice all over the picture, 0–1: the variance of its mean
+/// cell over what texels have in common with those one translation on. 1 for a strict pattern,
+/// however noisy or unevenly lit; near 0 when cells are like their neighbours but drift, as scales
+/// on a bent skin do, and the mean of all of them is a blur.
 #[must_use]
 pub fn steadiness(picture: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
     even_steadiness(&detrended(picture), lattice, averaged)
@@ -121,7 +124,8 @@ pub fn separate(picture: &Raster, lattice: &Lattice) -> Separation {
     with_cell(picture, lattice, &averaged_cell(picture, lattice).cell)
 }
 
-/// Takes a picture apart with a cell of one's own (mean 0), such as one averaged within its fundamental domain.
+/// Takes a picture apart with a cell of one's own (mean 0), such as one averaged within its
+/// fundamental domain.
 #[must_use]
 pub fn with_cell(picture: &Raster, lattice: &Lattice, cell: &Raster) -> Separation {
     let mean = picture.mean();

@@ -1,8 +1,8 @@
 //! Taking the light out of a picture before its pattern is sought.
 //!
-//! A brightness gradient raises the distortion of every long shift and tilts the minima out of the feature matrix. We
-//! subtract a least-squares surface of second order, then a wide blur (standard deviation one eighth of the
-//! shorter side), which leaves any pattern with three periods or more.
+//! A brightness gradient raises the distortion of every long shift and tilts the minima out of the
+//! feature matrix. We subtract a least-squares surface of second order, then a wide blur (standard
+//! deviation one eighth of the shorter side), which leaves any pattern with three periods or more.
 
 use crate::raster::Raster;
 
@@ -31,7 +31,8 @@ pub(super) fn decimated(picture: &Raster, factor: usize) -> Raster {
     })
 }
 
-/// Subtracts the least-squares surface 1, u, v, u² − c, u v, v² − c, which are orthogonal on the grid: c is the mean of the squares.
+/// Subtracts the least-squares surface 1, u, v, u² − c, u v, v² − c, which are orthogonal on the
+/// grid: c is the mean of the squares.
 fn without_quadratic(picture: &Raster) -> Raster {
     let (across, down) = (Along::of(picture.width), Along::of(picture.height));
     // Sums of the picture times each term.
@@ -81,7 +82,8 @@ impl Along {
     }
 }
 
-/// A Gaussian blur as three box blurs each way; at the border each box is cut and averages what is left.
+/// A Gaussian blur as three box blurs each way; at the border each box is cut and averages what is
+/// left.
 pub(super) fn blurred(picture: &Raster, sigma: f64) -> Raster {
     let mut result = picture.clone();
     if sigma > 0.0 {
@@ -94,7 +96,8 @@ pub(super) fn blurred(picture: &Raster, sigma: f64) -> Raster {
     result
 }
 
-/// Weights of a running mean: 1 up to `reach` texels to both sides, and `end` (0–1) one texel further.
+/// Weights of a running mean: 1 up to `reach` texels to both sides, and `end` (0–1) one texel
+/// further.
 #[derive(Debug, Clone, Copy)]
 struct RunningMean {
     reach: usize,
@@ -102,7 +105,8 @@ struct RunningMean {
 }
 
 impl RunningMean {
-    /// The box of exactly this variance, texels²: between whole boxes the ends make up the difference.
+    /// The box of exactly this variance, texels²: between whole boxes the ends make up the
+    /// difference.
     fn of_variance(variance: f64) -> Self {
         // A whole box of reach r has the variance r (r + 1)/3.
         let reach = (0.5 * ((1.0 + 12.0 * variance).sqrt() - 1.0)).floor();

@@ -1,10 +1,11 @@
-//! The lattice as the thesis finds it, with the settings its user tunes: for comparison with [`super::find_lattice`], which has none.
+//! The lattice as the thesis finds it, with the settings its user tunes: for comparison with
+//! [`super::find_lattice`], which has none.
 //!
 //! 1. Minima of the feature matrix at or below a threshold are a cloud of points.
-//! 2. The two directions q1, q2 in which the cloud, projected, is most concentrated: (1/n²) Σ_ij e^{−λ|a_i − a_j|} (Def. 7.8), at least
-//!    [`APART_DEG`] from each other.
-//! 3. Along q1 the length is where the sum of normal distributions over all distances of the cloud, projected in the direction
-//!    q2, is largest; along q2 the same.
+//! 2. The two directions q1, q2 in which the cloud, projected, is most concentrated: (1/n²) Σ_ij
+//!    e^{−λ|a_i − a_j|} (Def. 7.8), at least [`APART_DEG`] from each other.
+//! 3. Along q1 the length is where the sum of normal distributions over all distances of the cloud,
+//!    projected in the direction q2, is largest; along q2 the same.
 //!
 //! | symbol | here |
 //! |---|---|
@@ -42,8 +43,8 @@ const LARGEST_SIDE: usize = 256;
 pub struct DocumentSearch {
     /// Which distortion is averaged.
     pub distortion: Distortion,
-    /// Minima up to this share of the matrix's median count, 0–1. The best fixed one moves from 0.3 to 0.85 between clean and
-    /// noisy patterns.
+    /// Minima up to this share of the matrix's median count, 0–1. The best fixed one moves from 0.3
+    /// to 0.85 between clean and noisy patterns.
     pub threshold: f64,
 }
 
@@ -53,8 +54,9 @@ impl Default for DocumentSearch {
     }
 }
 
-/// The lattice by the document's method; nothing where fewer than three minima are deep enough or the picture is small. Its
-/// confidence is the mean depth of the matrix at the lattice's nodes, 1 − distortion over median.
+/// The lattice by the document's method; nothing where fewer than three minima are deep enough or
+/// the picture is small. Its confidence is the mean depth of the matrix at the lattice's nodes, 1 −
+/// distortion over median.
 #[must_use]
 pub fn document_lattice(picture: &Raster, search: &DocumentSearch) -> Option<Lattice> {
     let side = picture.width.min(picture.height);

@@ -1,4 +1,5 @@
-//! Waves of every direction and nearly one length, which fit themselves at one distance whatever the direction, and repeat nowhere.
+//! Waves of every direction and nearly one length, which fit themselves at one distance whatever
+//! the direction, and repeat nowhere.
 //!
 //! ```text
 //! P_i = Σ (|X(k)|² − N) over sector i of 24 and 0.82 K < |k| < 1.22 K        quiet = Σ of the 8 least P_i / Σ P_i
@@ -9,8 +10,10 @@
 //! | K | the ring of the most power near that of the lattice's shortest translation t, 0.7/&#124;t&#124; to 1.6/&#124;t&#124;, or of the next few, to 4.5/&#124;t&#124;, where that ring has most of the picture's power |
 //! | N | noise: the median power of 1.45 K to 1.9 K, over ln 2 |
 //!
-//! A lattice's waves lie in a few directions: quiet is 0 to 0.005 for square, hexagonal, rectangular and oblique patterns, clean, noisy and warped, and
-//! for frames; 0.002 for the skin of a reptile. Of ripples, wrinkles and grains of one size it is 0.07–0.21, a third where they are many. Source: ours.
+//! A lattice's waves lie in a few directions: quiet is 0 to 0.005 for square, hexagonal,
+//! rectangular and oblique patterns, clean, noisy and warped, and for frames; 0.002 for the skin of
+//! a reptile. Of ripples, wrinkles and grains of one size it is 0.07–0.21, a third where they are
+//! many. Source: ours.
 
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
@@ -22,9 +25,11 @@ const QUIET: f64 = 0.04;
 const SECTORS: usize = 24;
 /// Band in which the ring is looked for, over one wave a translation.
 const SOUGHT: [f64; 2] = [0.7, 1.6];
-/// Band for a lattice of several waves a cell, as chance proposes where nothing but the ring is seen.
+/// Band for a lattice of several waves a cell, as chance proposes where nothing but the ring is
+/// seen.
 const SEVERAL: [f64; 2] = [1.6, 4.5];
-/// Share of the picture's power that the ring then has at least: a pattern's harmonics stand beside its fundamental.
+/// Share of the picture's power that the ring then has at least: a pattern's harmonics stand beside
+/// its fundamental.
 const MOST_OF_ALL: f64 = 0.6;
 /// The ring, and where the noise is measured, over its middle.
 const RING: [f64; 2] = [0.82, 1.22];

@@ -1,9 +1,10 @@
 //! The statistical feature matrix: how badly a picture fits itself after each shift.
 //!
-//! SFM(s) = mean over the overlap of (g(p) − g(p + s))², shifts up to half the picture (thesis Defs.
-//! 7.3–7.7, squared distortion). Expanding the square gives two sums of g² over rectangles, read from a summed-area table,
-//! and an autocorrelation, taken by FFT on a zero-padded plane: the exact matrix in O(n log n) instead of O(n²)
-//! (1.4 s → 5 ms at 256²). The absolute distortion has no such expansion: [`absolute_feature_matrix`] is the O(n²) sum.
+//! SFM(s) = mean over the overlap of (g(p) − g(p + s))², shifts up to half the picture (thesis
+//! Defs. 7.3–7.7, squared distortion). Expanding the square gives two sums of g² over rectangles,
+//! read from a summed-area table, and an autocorrelation, taken by FFT on a zero-padded plane: the
+//! exact matrix in O(n log n) instead of O(n²) (1.4 s → 5 ms at 256²). The absolute distortion has
+//! no such expansion: [`absolute_feature_matrix`] is the O(n²) sum.
 //!
 //! | symbol | here |
 //! |---|---|
@@ -41,7 +42,8 @@ impl FeatureMatrix {
 pub fn feature_matrix(picture: &Raster) -> FeatureMatrix {
     let (width, height) = (picture.width, picture.height);
     let (reach_x, reach_y) = (width / 2, height / 2);
-    // Without the mean the two halves of the expanded square stay small, and so does their rounding.
+    // Without the mean the two halves of the expanded square stay small, and so does their
+    // rounding.
     let mean = picture.mean();
     let centred = picture.map(|v| v - mean);
     let products = autocorrelation(&centred, reach_x, reach_y);
@@ -96,8 +98,8 @@ pub fn absolute_feature_matrix(picture: &Raster) -> FeatureMatrix {
     FeatureMatrix { reach_x, reach_y, values }
 }
 
-/// The feature matrix with every pair of texels weighted by w(p) w(p + s), w falling to zero over the outer quarters: what the
-/// border cuts off does not matter. For mean-free pictures.
+/// The feature matrix with every pair of texels weighted by w(p) w(p + s), w falling to zero over
+/// the outer quarters: what the border cuts off does not matter. For mean-free pictures.
 pub(super) fn tapered_feature_matrix(picture: &Raster) -> FeatureMatrix {
     let (width, height) = (picture.width, picture.height);
     let (reach_x, reach_y) = (width / 2, height / 2);
@@ -173,7 +175,8 @@ fn autocorrelation(picture: &Raster, reach_x: usize, reach_y: usize) -> Vec<f64>
         }
         process(&back_across, &mut line);
         for column in 0..shifts {
-            // The transform of the power spectrum is the sum over g(p) g(p + s); s is periodic in `long`.
+            // The transform of the power spectrum is the sum over g(p) g(p + s); s is periodic in
+            // `long`.
             let value = line[(column + long - reach_x) % long] * scale;
             products[y * shifts + column] = value.re;
             if y < reach_y {

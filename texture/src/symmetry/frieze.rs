@@ -1,12 +1,15 @@
 //! Patterns that repeat along one direction: corrugated sheets, ribs, borders of ornaments.
 //!
-//! The thesis asks for two translations (ch. 7); many surfaces have one. Every direction and length is tried:
+//! The thesis asks for two translations (ch. 7); many surfaces have one. Every direction and length
+//! is tried:
 //!
-//! 1. *Score.* Weighted mean depth of the feature matrix at all multiples of a translation in reach, at least [`LEAST_MULTIPLES`].
-//! 2. *Choose.* The shortest translation that scores nearly as well as the best, and halfway between whose multiples the
-//!    picture fits clearly worse: else any small shift along a stripe would do.
-//! 3. *Stripes.* If every shift across the translation fits too, the pattern is a profile, and the translation is turned to be
-//!    perpendicular to the stripes.
+//! 1. *Score.* Weighted mean depth of the feature matrix at all multiples of a translation in
+//!    reach, at least [`LEAST_MULTIPLES`].
+//! 2. *Choose.* The shortest translation that scores nearly as well as the best, and halfway
+//!    between whose multiples the picture fits clearly worse: else any small shift along a stripe
+//!    would do.
+//! 3. *Stripes.* If every shift across the translation fits too, the pattern is a profile, and the
+//!    translation is turned to be perpendicular to the stripes.
 //! 4. *Average.* The strip one translation long is the mean of all in the picture.
 //!
 //! Its symmetry is one of the seven frieze groups (`frieze_group`).
@@ -52,14 +55,16 @@ pub struct Frieze {
     pub group: FriezeGroup,
     /// Number of strips that the primitive averages.
     pub repeats: usize,
-    /// One strip, its mean the picture's: columns along the translation, rows (a texel high) along its perpendicular, turned clockwise
-    /// as seen on the picture. Of stripes it is as high as long.
+    /// One strip, its mean the picture's: columns along the translation, rows (a texel high) along
+    /// its perpendicular, turned clockwise as seen on the picture. Of stripes it is as high as
+    /// long.
     #[serde(skip)]
     pub primitive: Raster,
 }
 
-/// The one direction in which a picture repeats, for pictures whose pattern does not repeat along two
-/// ([`super::find_lattice`]); values should be finite. At least six repeats must be in the picture.
+/// The one direction in which a picture repeats, for pictures whose pattern does not repeat along
+/// two ([`super::find_lattice`]); values should be finite. At least six repeats must be in the
+/// picture.
 #[must_use]
 pub fn find_frieze(picture: &Raster) -> Option<Frieze> {
     let side = picture.width.min(picture.height);
@@ -81,7 +86,8 @@ pub fn find_frieze(picture: &Raster) -> Option<Frieze> {
     Some(Frieze { t_px, confidence, stripes, group, repeats, primitive })
 }
 
-/// Weighted mean depth at the multiples m + `offset` of a translation; nothing with too few in reach.
+/// Weighted mean depth at the multiples m + `offset` of a translation; nothing with too few in
+/// reach.
 fn score(fit: &Fit, t: [f64; 2], offset: f64) -> Option<f64> {
     let near = 0.5 * fit.reach()[0].min(fit.reach()[1]);
     let (mut sum, mut weights, mut count) = (0.0, 0.0, 0);
@@ -128,7 +134,8 @@ fn fits_across(fit: &Fit, t: [f64; 2]) -> bool {
     depths.len() >= 8 && mean >= AS_GOOD * score(fit, t, 0.0).unwrap_or(f64::INFINITY)
 }
 
-/// The direction near the perpendicular of a translation along which shifts fit best, four texels long.
+/// The direction near the perpendicular of a translation along which shifts fit best, four texels
+/// long.
 fn ridge(fit: &Fit, t: [f64; 2]) -> [f64; 2] {
     let start = (t[0]).atan2(-t[1]);
     let mean = |turn: f64| {
@@ -158,7 +165,8 @@ fn across_stripes(fit: &Fit, t: [f64; 2]) -> [f64; 2] {
     polished(fit, turned, 0.0)
 }
 
-/// A translation moved to where its multiples fit best, a little at a time; `sideways` 0 keeps its direction.
+/// A translation moved to where its multiples fit best, a little at a time; `sideways` 0 keeps its
+/// direction.
 fn polished(fit: &Fit, start: [f64; 2], sideways: f64) -> [f64; 2] {
     let mut best = start;
     for step in [0.3, 0.1, 0.03, 0.01] {

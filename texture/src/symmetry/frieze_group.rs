@@ -1,7 +1,8 @@
 //! Frieze group of a strip: one of seven.
 //!
-//! A strip repeats along x. What else can carry it onto itself: a mirror across (x → c − x), a mirror along (y → d − y), a glide
-//! (y → d − y, x → x + ½), a half turn (both). Each is tried at every c and d; it is a symmetry if strip and image agree.
+//! A strip repeats along x. What else can carry it onto itself: a mirror across (x → c − x), a
+//! mirror along (y → d − y), a glide (y → d − y, x → x + ½), a half turn (both). Each is tried at
+//! every c and d; it is a symmetry if strip and image agree.
 //!
 //! | group | mirror across | mirror along | glide | half turn |
 //! |---|---|---|---|---|
@@ -16,8 +17,8 @@
 use crate::raster::Raster;
 use serde::Serialize;
 
-/// Least correlation of a strip with its image. Source: ours; strips of the tests reach 0.97 and more under their own symmetries, 0.94
-/// under others.
+/// Least correlation of a strip with its image. Source: ours; strips of the tests reach 0.97 and
+/// more under their own symmetries, 0.94 under others.
 const SYMMETRY_LIMIT: f64 = 0.955;
 
 /// Longest strip that is compared texel by texel; longer ones are averaged down.
@@ -66,7 +67,8 @@ impl FriezeGroup {
     }
 }
 
-/// The group of a strip that repeats along x. Stripes have the mirror along them whatever their profile.
+/// The group of a strip that repeats along x. Stripes have the mirror along them whatever their
+/// profile.
 pub(super) fn frieze_group(strip: &Raster, stripes: bool) -> FriezeGroup {
     let parts = Parts::new(&reduced(strip));
     let is = |agreement: f64| agreement >= SYMMETRY_LIMIT;
@@ -87,7 +89,8 @@ pub(super) fn frieze_group(strip: &Raster, stripes: bool) -> FriezeGroup {
     }
 }
 
-/// A strip taken apart: what its rows are on the mean, which any movement along x leaves alone, and the rest.
+/// A strip taken apart: what its rows are on the mean, which any movement along x leaves alone, and
+/// the rest.
 struct Parts {
     rows: Vec<f64>,
     detail: Raster,
@@ -127,12 +130,14 @@ impl Parts {
         (0..width).map(|c| self.over_axes(|x| (c + width - x) % width)).fold(0.0, f64::max)
     }
 
-    /// Best correlation over the axes d whose image covers most of the pattern and whose rows do not differ.
+    /// Best correlation over the axes d whose image covers most of the pattern and whose rows do
+    /// not differ.
     fn over_axes(&self, image_x: impl Fn(usize) -> usize) -> f64 {
         let (width, height) = (self.detail.width, self.detail.height);
         let energy: f64 = self.detail.values.iter().map(|v| v * v).sum();
         let agreement = |d: usize| {
-            // Products and energies of the rows that the image covers: of the detail, of the rows' means.
+            // Products and energies of the rows that the image covers: of the detail, of the rows'
+            // means.
             let (mut product, mut covered, mut rows, mut rows_covered) = (0.0, 0.0, 0.0, 0.0);
             for y in (0..height).filter(|y| d >= *y && d - y < height) {
                 let (row, image) = (self.detail.row(y), self.detail.row(d - y));
@@ -145,7 +150,8 @@ impl Parts {
                 return 0.0;
             }
             let detail = product / covered.max(f64::MIN_POSITIVE);
-            // The rows' means hold what slow light the strip has left: they veto, but do not measure.
+            // The rows' means hold what slow light the strip has left: they veto, but do not
+            // measure.
             let differ = rows_covered >= 0.05 * covered && rows < LEAST_OF_ROWS * rows_covered;
             if differ { detail.min(rows / rows_covered) } else { detail }
         };

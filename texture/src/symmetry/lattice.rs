@@ -4,9 +4,9 @@ use serde::Serialize;
 
 /// The lattice of a repeated pattern, in texels of the picture; x grows to the right, y downwards.
 ///
-/// The basis is reduced: `t1_px` is a shortest translation and points right (or straight down; of several as short to within
-/// 2 % the one nearest to "right"), `t2_px` a shortest one that is not parallel to it, turned from `t1_px` by 60° to 120°
-/// clockwise as seen on the picture.
+/// The basis is reduced: `t1_px` is a shortest translation and points right (or straight down; of
+/// several as short to within 2 % the one nearest to "right"), `t2_px` a shortest one that is not
+/// parallel to it, turned from `t1_px` by 60° to 120° clockwise as seen on the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Lattice {
     /// First translation, texels.
@@ -68,7 +68,8 @@ pub(super) fn solve(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> [f64; 2] {
     [cross(point, b) / area, cross(a, point) / area]
 }
 
-/// The reduced basis of the lattice that a and b span (Lagrange and Gauss), oriented as [`Lattice`] says.
+/// The reduced basis of the lattice that a and b span (Lagrange and Gauss), oriented as [`Lattice`]
+/// says.
 pub(super) fn reduced(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
     let (mut short, mut long) = if length(a) <= length(b) { (a, b) } else { (b, a) };
     // Each round shortens `long` or ends; 64 rounds would shrink any finite basis to nothing.
@@ -90,8 +91,8 @@ pub(super) fn reduced(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
     [short, long]
 }
 
-/// Lattice with the first translation as nearly to the right as one of the shortest can be, so that noise
-/// does not turn a square lattice by 90°.
+/// Lattice with the first translation as nearly to the right as one of the shortest can be, so that
+/// noise does not turn a square lattice by 90°.
 pub(super) fn upright([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     let shortest = length(a) * (1.0 + AS_SHORT);
     let between = if dot(a, b) > 0.0 { combine(a, b, 1.0, -1.0) } else { combine(a, b, 1.0, 1.0) };

@@ -4,7 +4,8 @@ use super::detrend::blurred;
 use super::feature_matrix::FeatureMatrix;
 use crate::raster::Raster;
 
-/// Standard deviation of the blur that keeps a noisy floor from breaking one minimum into many, texels.
+/// Standard deviation of the blur that keeps a noisy floor from breaking one minimum into many,
+/// texels.
 const BLUR: f64 = std::f64::consts::SQRT_2;
 
 /// A minimum must be the lowest within this many texels along x and y.
@@ -35,8 +36,8 @@ impl Fit {
         Self::blurred(matrix, BLUR)
     }
 
-    /// Fit with a blur of one texel, for minima that are known to be there: less of it, less of a lopsided
-    /// neighbourhood pulls at them.
+    /// Fit with a blur of one texel, for minima that are known to be there: less of it, less of a
+    /// lopsided neighbourhood pulls at them.
     pub fn sharp(matrix: &FeatureMatrix) -> Option<Self> {
         Self::blurred(matrix, 1.0)
     }
@@ -85,8 +86,8 @@ impl Fit {
         self.reach
     }
 
-    /// All minima in the right half plane, deepest first; the others are their mirror images. Shifts
-    /// shorter than `shortest` are left out.
+    /// All minima in the right half plane, deepest first; the others are their mirror images.
+    /// Shifts shorter than `shortest` are left out.
     pub fn minima(&self, shortest: f64) -> Vec<Minimum> {
         let depth = &self.depth;
         let mut found = Vec::new();
@@ -118,7 +119,8 @@ impl Fit {
         true
     }
 
-    /// Vertex of the paraboloid through the neighbours: offset within half a texel, and depth there.
+    /// Vertex of the paraboloid through the neighbours: offset within half a texel, and depth
+    /// there.
     fn vertex(&self, x: usize, y: usize) -> ([f64; 2], f64) {
         let d = |i: isize, j: isize| self.depth.at(x.wrapping_add_signed(i), y.wrapping_add_signed(j));
         let here = d(0, 0);

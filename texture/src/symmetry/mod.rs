@@ -1,7 +1,9 @@
-//! Repeated patterns: the lattice of a picture, its averaged cell, what is left, and the wallpaper group.
+//! Repeated patterns: the lattice of a picture, its averaged cell, what is left, and the wallpaper
+//! group.
 //!
-//! Source: thesis ch. 7 (statistical feature matrix, Def. 7.3–7.7; lattices from point clouds, §7.2.2).
-//! The document's user tunes a threshold and two widths; here nothing is tuned, and "no symmetry" is an answer.
+//! Source: thesis ch. 7 (statistical feature matrix, Def. 7.3–7.7; lattices from point clouds,
+//! §7.2.2). The document's user tunes a threshold and two widths; here nothing is tuned, and "no
+//! symmetry" is an answer.
 //!
 //! | step | file |
 //! |---|---|

@@ -1,9 +1,11 @@
-//! The nodes of a lattice in the feature matrix: how well they fit, and whether some of them fit worse than the rest.
+//! The nodes of a lattice in the feature matrix: how well they fit, and whether some of them fit
+//! worse than the rest.
 
 use super::lattice::{combine, cross, length};
 use super::minima::Fit;
 
-/// Coarser lattices of index 2 and 3 within a lattice: (k, i, j) holds the nodes with i·m + j·n divisible by k.
+/// Coarser lattices of index 2 and 3 within a lattice: (k, i, j) holds the nodes with i·m + j·n
+/// divisible by k.
 pub(super) const COARSER: [(f64, f64, f64); 7] = [
     (2.0, 1.0, 0.0),
     (2.0, 0.0, 1.0),
@@ -14,8 +16,9 @@ pub(super) const COARSER: [(f64, f64, f64); 7] = [
     (3.0, 1.0, 2.0),
 ];
 
-/// Largest index of a coarser lattice that is told from a finer one at which only some of the pattern's lines fit: frames whose gap
-/// is a quarter or a fifth of their period fit themselves there in part.
+/// Largest index of a coarser lattice that is told from a finer one at which only some of the
+/// pattern's lines fit: frames whose gap is a quarter or a fifth of their period fit themselves
+/// there in part.
 const DEEPEST_INDEX: usize = 9;
 
 /// The basis of the coarser lattice of [`coarser_lattices`] within the lattice of a and b.
@@ -27,7 +30,8 @@ pub(super) fn coarser(a: [f64; 2], b: [f64; 2], (k, i, j): (f64, f64, f64)) -> [
     }
 }
 
-/// All coarser lattices of index 2 to [`DEEPEST_INDEX`] whose nodes are those with i·m + j·n divisible by k, each once.
+/// All coarser lattices of index 2 to [`DEEPEST_INDEX`] whose nodes are those with i·m + j·n
+/// divisible by k, each once.
 pub(super) fn coarser_lattices() -> Vec<(f64, f64, f64)> {
     let mut all = Vec::new();
     for k in 2..=DEEPEST_INDEX {
@@ -43,8 +47,8 @@ pub(super) fn coarser_lattices() -> Vec<(f64, f64, f64)> {
     all.into_iter().map(|(k, i, j)| (k as f64, i as f64, j as f64)).collect()
 }
 
-/// Nodes outside a coarser lattice that fit worse by less than this, relative, are as good as those on it: reading the matrix
-/// between texels costs as much.
+/// Nodes outside a coarser lattice that fit worse by less than this, relative, are as good as those
+/// on it: reading the matrix between texels costs as much.
 const UNEVEN_LIMIT: f64 = 0.02;
 
 /// Nodes of two lattices nearer to each other than this are one node, texels.
@@ -53,7 +57,8 @@ const SHARED_PX: f64 = 1.5;
 /// Standard errors from which the difference is no chance.
 pub(super) const CLEARLY_UNEVEN: f64 = 6.0;
 
-/// Calls `visit(m, n, depth, weight)` for the nodes (m, n) + offset within reach, one of each ± pair.
+/// Calls `visit(m, n, depth, weight)` for the nodes (m, n) + offset within reach, one of each ±
+/// pair.
 pub(super) fn for_each_node(
     fit: &Fit,
     basis: [[f64; 2]; 2],
@@ -103,14 +108,15 @@ impl Nodes {
         Self(all)
     }
 
-    /// By how many standard errors the nodes outside a coarser lattice fit worse than those on it, beside what the distance
-    /// does; 0 when the difference is too small to matter.
+    /// By how many standard errors the nodes outside a coarser lattice fit worse than those on it,
+    /// beside what the distance does; 0 when the difference is too small to matter.
     pub fn unevenness(&self, (k, i, j): (f64, f64, f64)) -> f64 {
         let is_outside = |node: &Node| (i * node.m + j * node.n).rem_euclid(k) != 0.0;
         missing(self.0.iter().map(|node| (*node, is_outside(node))))
     }
 
-    /// By how many standard errors these nodes fit worse than those of another lattice, nodes of both left out; likewise.
+    /// By how many standard errors these nodes fit worse than those of another lattice, nodes of
+    /// both left out; likewise.
     pub fn worse_than(&self, other: &Self) -> f64 {
         let is_shared = |node: &&Node| {
             let beside = |o: &Node| length(combine(o.shift, node.shift, 1.0, -1.0)) < SHARED_PX;
@@ -121,8 +127,8 @@ impl Nodes {
     }
 }
 
-/// By how many standard errors the nodes that are outside fit worse than the others, beside what the distance does; 0 when the
-/// difference is too small to matter, or they are too few to tell.
+/// By how many standard errors the nodes that are outside fit worse than the others, beside what
+/// the distance does; 0 when the difference is too small to matter, or they are too few to tell.
 fn missing(nodes: impl Iterator<Item = (Node, bool)>) -> f64 {
     // Weighted least squares of depth = p + q·distance² + r·outside.
     let (mut squares, mut products, mut energy, mut weights) = ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0);

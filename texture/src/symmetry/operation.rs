@@ -52,11 +52,13 @@ impl Matrix {
         }
     }
 
-    /// For a reflection: the shortest lattice vectors along its axis and across it, in lattice coordinates.
+    /// For a reflection: the shortest lattice vectors along its axis and across it, in lattice
+    /// coordinates.
     pub fn axes(self) -> ([i64; 2], [i64; 2]) {
         let fixed = |sign: i64| {
             let mut found = [0, 0];
-            // Entries in {−1, 0, 1} have axes with coordinates up to 2; the first primitive one is enough.
+            // Entries in {−1, 0, 1} have axes with coordinates up to 2; the first primitive one is
+            // enough.
             for candidate in [[1, 0], [0, 1], [1, 1], [1, -1], [2, 1], [1, 2], [2, -1], [1, -2]] {
                 let image = self.apply_whole(candidate);
                 if image == [sign * candidate[0], sign * candidate[1]] {
@@ -69,15 +71,16 @@ impl Matrix {
         (fixed(1), fixed(-1))
     }
 
-    /// Tests whether the vectors along and across a reflection's axis span only half of the lattice.
+    /// Tests whether the vectors along and across a reflection's axis span only half of the
+    /// lattice.
     pub fn axes_are_centred(self) -> bool {
         let ([a, b], [c, d]) = self.axes();
         (a * d - b * c).abs() == 2
     }
 }
 
-/// All symmetries of a lattice with a reduced basis that fixes the origin, up to a relative change `tolerance` of
-/// lengths and angles.
+/// All symmetries of a lattice with a reduced basis that fixes the origin, up to a relative change
+/// `tolerance` of lengths and angles.
 pub(super) fn holohedry(basis: [[f64; 2]; 2], tolerance: f64) -> Vec<Matrix> {
     let product = |p: [f64; 2], q: [f64; 2]| {
         let vector = |[m, n]: [f64; 2]| [0, 1].map(|k| m * basis[0][k] + n * basis[1][k]);
@@ -121,8 +124,9 @@ pub(super) fn closure(generators: &[Matrix]) -> Vec<Matrix> {
     members
 }
 
-/// Moves the origin to a rotation centre (or onto an axis) and rounds the translations there to sixths, so that
-/// the operations are an exact group. Nothing if the measured translations belong to no group.
+/// Moves the origin to a rotation centre (or onto an axis) and rounds the translations there to
+/// sixths, so that the operations are an exact group. Nothing if the measured translations belong
+/// to no group.
 pub(super) fn snapped(measured: &[Operation]) -> Option<([f64; 2], Vec<Operation>)> {
     let rotation = measured
         .iter()

@@ -1,27 +1,35 @@
 //! Lattice search among the minima of the feature matrix, which may find none.
 //!
-//! The document cuts the minima with a threshold its user tunes, and no threshold serves all pictures: the best fixed one moves
-//! from 0.3 to 0.85 between clean and noisy patterns. Ours has none:
+//! The document cuts the minima with a threshold its user tunes, and no threshold serves all
+//! pictures: the best fixed one moves from 0.3 to 0.85 between clean and noisy patterns. Ours has
+//! none:
 //!
-//! 1. *Sweep.* The deepest n minima, n in `SWEEP`, and those down to a share of the deepest, each give candidates:
-//!    all pairs of the shortest among them, reduced.
-//! 2. *Refine.* Each candidate is fitted to the minima near its nodes by least squares, outwards from the centre.
-//! 3. *Score.* Mean depth of the matrix over the nodes beyond the first ring, near ones counting more (a warped
-//!    pattern loses its far nodes first), over its mean, in standard errors of as many random shifts. Chance minima propose, but do not predict others.
-//! 4. *Choose.* The best score among the even ones: a multiple of the true cell has fewer nodes, so its score is lower; a
-//!    fraction of it is uneven, that is, the nodes outside one of its coarser lattices fit worse than those on it.
-//! 5. *Refuse* scores below [`MERIT_LIMIT`], and lattices at whose half translations the picture fits nearly as well, however often they are
-//!    halved: stripes fit themselves at any shift along them. Then the next best are tried.
+//! 1. *Sweep.* The deepest n minima, n in `SWEEP`, and those down to a share of the deepest, each
+//!    give candidates: all pairs of the shortest among them, reduced.
+//! 2. *Refine.* Each candidate is fitted to the minima near its nodes by least squares, outwards
+//!    from the centre.
+//! 3. *Score.* Mean depth of the matrix over the nodes beyond the first ring, near ones counting
+//!    more (a warped pattern loses its far nodes first), over its mean, in standard errors of as
+//!    many random shifts. Chance minima propose, but do not predict others.
+//! 4. *Choose.* The best score among the even ones: a multiple of the true cell has fewer nodes, so
+//!    its score is lower; a fraction of it is uneven, that is, the nodes outside one of its coarser
+//!    lattices fit worse than those on it.
+//! 5. *Refuse* scores below [`MERIT_LIMIT`], and lattices at whose half translations the picture
+//!    fits nearly as well, however often they are halved: stripes fit themselves at any shift along
+//!    them. Then the next best are tried.
 //!
 //!    So are pictures whose waves of a translation's length have every direction.
-//! 6. *Coarsen.* A lattice is given up for a coarser one, of up to nine times its cell a step, whose nodes fit better than can be chance: a cell
-//!    with two nearly equal halves, or frames whose gap is a quarter of their period, which fit themselves in part at every quarter. So it
-//!    is for any other larger cell that was proposed: a gap and a side that are no multiples of each other have no fraction in common.
+//! 6. *Coarsen.* A lattice is given up for a coarser one, of up to nine times its cell a step,
+//!    whose nodes fit better than can be chance: a cell with two nearly equal halves, or frames
+//!    whose gap is a quarter of their period, which fit themselves in part at every quarter. So it
+//!    is for any other larger cell that was proposed: a gap and a side that are no multiples of
+//!    each other have no fraction in common.
 //! 7. *Sharpen.* The basis is fitted again where the border of the picture counts less.
 //!
-//! Measured (`analysis_table lattice`, five kinds, 24 patterns each, 256²): all right under noise to σ = 2, gradient and warp of 1
-//! texel, 0.992 under warp of 2 texels (0.988 of 240 other patterns). All of 1064 squares in frames (`analysis_table framed`), of which
-//! 38 in 864 were once told a quarter or a fifth of their lattice.
+//! Measured (`analysis_table lattice`, five kinds, 24 patterns each, 256²): all right under noise
+//! to σ = 2, gradient and warp of 1 texel, 0.992 under warp of 2 texels (0.988 of 240 other
+//! patterns). All of 1064 squares in frames (`analysis_table framed`), of which 38 in 864 were once
+//! told a quarter or a fifth of their lattice.
 
 use super::detrend::{decimated, detrended};
 use super::every_direction::has_waves_of_every_direction;
@@ -45,13 +53,15 @@ const PAIRED: usize = 7;
 const EVEN_LIMIT: f64 = 0.89;
 
 /// Half translations that fit better than this share of the nodes mean that the pattern does not
-/// repeat in one of the directions, or on no scale we can see. Above [`EVEN_LIMIT`]: what is too uneven to divide the cell must not refuse it.
+/// repeat in one of the directions, or on no scale we can see. Above [`EVEN_LIMIT`]: what is too
+/// uneven to divide the cell must not refuse it.
 const HALF_LIMIT: f64 = 0.92;
 
 /// Cells this many times as large are no other fit of the same.
 const LARGER: f64 = 1.2;
 
-/// Most candidates that are tried, the best first, before a picture is taken not to repeat along two directions.
+/// Most candidates that are tried, the best first, before a picture is taken not to repeat along
+/// two directions.
 const MOST_TRIED: usize = 8;
 
 /// Shortest translation, texels of the (decimated) picture.
@@ -66,14 +76,14 @@ const FEW_CELLS: f64 = 3000.0;
 /// Smallest width and height in which a pattern is sought, texels.
 pub const SMALLEST_SIDE: usize = 24;
 
-/// The merit at which a lattice is as likely as none, standard errors. Of 312 pictures without a pattern (Brownian
-/// surfaces, blobs, packed grains, stripes, white noise) none reaches 3.8; patterns with 7 periods or more
-/// reach 5.9 under any stress of the table, with 5 periods about 5.
+/// The merit at which a lattice is as likely as none, standard errors. Of 312 pictures without a
+/// pattern (Brownian surfaces, blobs, packed grains, stripes, white noise) none reaches 3.8;
+/// patterns with 7 periods or more reach 5.9 under any stress of the table, with 5 periods about 5.
 pub const MERIT_LIMIT: f64 = 5.0;
 
-/// The lattice of a picture's pattern, or nothing if no pattern repeats along two directions. There is no
-/// threshold to tune; values should be finite, their unit does not matter. Five repeats a side are needed, two of a map
-/// that tiles.
+/// The lattice of a picture's pattern, or nothing if no pattern repeats along two directions. There
+/// is no threshold to tune; values should be finite, their unit does not matter. Five repeats a
+/// side are needed, two of a map that tiles.
 #[must_use]
 pub fn find_lattice(picture: &Raster) -> Option<Lattice> {
     let found = best_lattice(picture).filter(|lattice| lattice.confidence >= 0.5);
@@ -129,8 +139,9 @@ fn search(picture: &Raster, scale: f64) -> Option<Lattice> {
     Some(Lattice { t1_px, t2_px, confidence })
 }
 
-/// The basis of a picture of few cells, fitted again where its border counts less: a mark that the border cuts fits
-/// better a little further out, and pulls the minima there. (Five cells of 16 texels: 16.17 before, 16.02 after.)
+/// The basis of a picture of few cells, fitted again where its border counts less: a mark that the
+/// border cuts fits better a little further out, and pulls the minima there. (Five cells of 16
+/// texels: 16.17 before, 16.02 after.)
 fn sharpened(even: &Raster, basis: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     let cells = (even.width * even.height) as f64 / cross(basis[0], basis[1]).abs();
     if cells > FEW_CELLS {
@@ -162,7 +173,8 @@ struct Candidate {
     basis: [[f64; 2]; 2],
     /// Weighted mean depth over all nodes.
     score: f64,
-    /// Mean depth at the nodes that did not propose the lattice, in standard errors of as many random shifts.
+    /// Mean depth at the nodes that did not propose the lattice, in standard errors of as many
+    /// random shifts.
     merit: f64,
     /// True where no coarser lattice holds all the good nodes.
     even: bool,
@@ -172,7 +184,8 @@ struct Candidate {
 fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<[[f64; 2]; 2]> = Vec::new();
-    // By number, and by depth: where thousands of nodes are equally deep, no number of them holds the shortest.
+    // By number, and by depth: where thousands of nodes are equally deep, no number of them holds
+    // the shortest.
     let deepest = minima.first().map_or(0.0, |m| m.depth);
     let by_depth = DEPTH_SWEEP.map(|share| minima.partition_point(|m| m.depth >= share * deepest));
     for count in SWEEP.into_iter().filter(|n| *n < 2 * minima.len()).chain(by_depth) {
@@ -196,7 +209,8 @@ fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
     found
 }
 
-/// Divides the cell by 2 or 3 as long as the finer lattice fits evenly and has more merit: the sweep may have met only a multiple.
+/// Divides the cell by 2 or 3 as long as the finer lattice fits evenly and has more merit: the
+/// sweep may have met only a multiple.
 fn finest(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
     let mut best = start;
     loop {
@@ -216,9 +230,10 @@ fn finest(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
     }
 }
 
-/// Multiplies the cell as long as the nodes that are left out then fit worse than can be chance: a cell with two nearly equal
-/// halves, or one at which only some of the pattern's lines meet others. What is too even for the candidates, which must bear
-/// noise, may be clearly uneven in a clean picture.
+/// Multiplies the cell as long as the nodes that are left out then fit worse than can be chance: a
+/// cell with two nearly equal halves, or one at which only some of the pattern's lines meet others.
+/// What is too even for the candidates, which must bear noise, may be clearly uneven in a clean
+/// picture.
 fn coarse_enough(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
     let all = coarser_lattices();
     let mut best = start;
@@ -238,8 +253,9 @@ fn coarse_enough(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
     }
 }
 
-/// The proposed lattice of a larger cell, if there is one, whose nodes fit better than this one's by more than can be chance: lines that
-/// frames have in common with their neighbours fit themselves at distances that divide no translation.
+/// The proposed lattice of a larger cell, if there is one, whose nodes fit better than this one's
+/// by more than can be chance: lines that frames have in common with their neighbours fit
+/// themselves at distances that divide no translation.
 fn outdone(fit: &Fit, chosen: &Candidate, proposed: &[Candidate]) -> Option<Candidate> {
     let area = |c: &Candidate| cross(c.basis[0], c.basis[1]).abs();
     let nodes = Nodes::new(fit, chosen.basis);
@@ -321,8 +337,9 @@ fn scored(fit: &Fit, basis: [[f64; 2]; 2]) -> Option<Candidate> {
     })
 }
 
-/// Divides the cell as long as the nodes moved by half a translation fit nearly as well as the nodes. Whether that comes to an end: a pattern
-/// that does not repeat in one of the directions has no shortest translation there.
+/// Divides the cell as long as the nodes moved by half a translation fit nearly as well as the
+/// nodes. Whether that comes to an end: a pattern that does not repeat in one of the directions has
+/// no shortest translation there.
 fn divided(fit: &Fit, minima: &[Minimum], start: Candidate) -> (Candidate, bool) {
     let mut best = start;
     while let Some(finer) = half_that_fits(fit, &best) {
@@ -337,7 +354,8 @@ fn divided(fit: &Fit, minima: &[Minimum], start: Candidate) -> (Candidate, bool)
     (best, true)
 }
 
-/// The finer lattice whose additional nodes, moved by half a translation, fit nearly as well as the nodes, and not clearly worse.
+/// The finer lattice whose additional nodes, moved by half a translation, fit nearly as well as the
+/// nodes, and not clearly worse.
 fn half_that_fits(fit: &Fit, lattice: &Candidate) -> Option<[[f64; 2]; 2]> {
     let [a, b] = lattice.basis;
     let half = |t: [f64; 2]| [0.5 * t[0], 0.5 * t[1]];

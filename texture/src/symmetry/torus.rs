@@ -1,7 +1,8 @@
 //! Few repeats in a map that tiles: its seam is evidence.
 //!
-//! Two to four repeats a side leave the feature matrix too few nodes to be told from chance. A map that tiles is drawn on a
-//! torus, and a pattern of n cells on it has waves at one in n frequencies only, those of the lattice's dual:
+//! Two to four repeats a side leave the feature matrix too few nodes to be told from chance. A map
+//! that tiles is drawn on a torus, and a pattern of n cells on it has waves at one in n frequencies
+//! only, those of the lattice's dual:
 //!
 //! ```text
 //! k = i (a, 0) + j (b, d)     n = a d     t1 = (W/a, −b H/n)     t2 = (0, H/d)
@@ -15,12 +16,15 @@
 //! | q | part of the map that repeats: 1 without noise, about 0 where nothing does |
 //! | z | q in standard errors of what as many independent waves give by chance |
 //!
-//! Stripes lie on one line of waves, at which any number of cells across fits: without the strongest line the rest must still
-//! repeat. A lattice that leaves out waves which another has and which stand out of the rest is a fraction and is not taken.
+//! Stripes lie on one line of waves, at which any number of cells across fits: without the
+//! strongest line the rest must still repeat. A lattice that leaves out waves which another has and
+//! which stand out of the rest is a fraction and is not taken.
 //!
-//! Source: ours. Measured (`lattice_of_few_repeats`, random motifs): all of 30 clean maps of two to five repeats, 27 of 30 under
-//! noise of 0.05 of their deviation; under noise of 0.25 and 0.7 0.92 of nine cells and more, a third of 2 × 2: of few cells under
-//! noise too few waves are left to tell a pattern from chance. No fraction, and none of 54 periodic maps without a pattern is called one.
+//! Source: ours. Measured (`lattice_of_few_repeats`, random motifs): all of 30 clean maps of two to
+//! five repeats, 27 of 30 under noise of 0.05 of their deviation; under noise of 0.25 and 0.7 0.92
+//! of nine cells and more, a third of 2 × 2: of few cells under noise too few waves are left to
+//! tell a pattern from chance. No fraction, and none of 54 periodic maps without a pattern is
+//! called one.
 
 use super::detrend::decimated;
 use super::lattice::{Lattice, length, reduced, upright};
@@ -42,19 +46,20 @@ const LONGEST: f64 = 0.6;
 const SHORTEST: f64 = 1.0 / 8.5;
 /// Least part of the map that must repeat.
 const LEAST_REPEATING: f64 = 0.5;
-/// Standard errors at which a lattice is as likely as none. Some thousand lattices are tried: of periodic noise, blobs and rings
-/// of waves none reaches 5.
+/// Standard errors at which a lattice is as likely as none. Some thousand lattices are tried: of
+/// periodic noise, blobs and rings of waves none reaches 5.
 const MERIT_LIMIT: f64 = 6.0;
 /// Spectrum without the strongest line of waves.
 const ACROSS_LIMIT: f64 = 4.0;
 /// Share of the power outside the strongest line below which a map is striped.
 const LEAST_ACROSS: f64 = 0.05;
-/// A lattice of more cells is preferred while what does not repeat at it is at most this many times what does not at the best,
-/// and this much more.
+/// A lattice of more cells is preferred while what does not repeat at it is at most this many times
+/// what does not at the best, and this much more.
 const AS_GOOD: (f64, f64) = (1.5, 0.02);
 /// Natural logarithm of the odds from which a wave is no noise.
 const BEYOND_CHANCE: f64 = 6.0;
-/// Share of the power that waves have at least to count as left out: less is what drawing on texels leaves of a clean pattern.
+/// Share of the power that waves have at least to count as left out: less is what drawing on texels
+/// leaves of a clean pattern.
 const LEAST_BETWEEN: f64 = 0.01;
 /// Side from which maps are averaged down, texels: eight for the shortest wave.
 const SEARCH_SIDE: usize = 8 * MOST_WAVES;
@@ -169,8 +174,8 @@ impl Waves {
         Self(self.0.iter().filter(|(k, _)| Some(direction(*k)) != along).copied().collect())
     }
 
-    /// Tests whether waves that a coarser lattice has and a finer one has not are beyond what chance makes of those that neither has: then the
-    /// finer one is a fraction of the pattern's.
+    /// Tests whether waves that a coarser lattice has and a finer one has not are beyond what
+    /// chance makes of those that neither has: then the finer one is a fraction of the pattern's.
     fn shows_between(&self, coarser: &Torus, finer: &Torus) -> bool {
         if coarser.cells() >= finer.cells() || !coarser.spans(finer) {
             return false;
@@ -216,7 +221,8 @@ fn direction([kx, ky]: [i32; 2]) -> [i32; 2] {
     [kx / p, ky / p]
 }
 
-/// The lattice of most cells of those at which nearly as much repeats as at any and that leave out no waves of another; its merit.
+/// The lattice of most cells of those at which nearly as much repeats as at any and that leave out
+/// no waves of another; its merit.
 fn best(waves: &Waves, powers: &Waves, lattices: &[Torus]) -> Option<(Torus, f64)> {
     let across = waves.across();
     let clear = lattices.iter().filter_map(|torus| {

@@ -1,17 +1,19 @@
 //! The wallpaper group of an averaged cell, and averaging within its fundamental domain.
 //!
-//! Thesis §7.1.2 stops at the lattice; the group is ours. In lattice coordinates every symmetry is x → M·x + w with an
-//! integer matrix M, which maps an N × N sampling of the cell onto itself without interpolation.
+//! Thesis §7.1.2 stops at the lattice; the group is ours. In lattice coordinates every symmetry is
+//! x → M·x + w with an integer matrix M, which maps an N × N sampling of the cell onto itself
+//! without interpolation.
 //!
-//! 1. The holohedry: all M with entries in {−1, 0, 1} that keep the lattice's lengths and angles. Its rotations have
-//!    orders 1, 2, 3, 4 and 6 only (crystallographic restriction, Satz 7.2).
-//! 2. For each M the w that fits best is the peak of the correlation of the cell with its image, found
-//!    by FFT over all w at once; its height, over the reliability of the cell, says whether (M, w) is a symmetry.
+//! 1. The holohedry: all M with entries in {−1, 0, 1} that keep the lattice's lengths and angles.
+//!    Its rotations have orders 1, 2, 3, 4 and 6 only (crystallographic restriction, Satz 7.2).
+//! 2. For each M the w that fits best is the peak of the correlation of the cell with its image,
+//!    found by FFT over all w at once; its height, over the reliability of the cell, says whether
+//!    (M, w) is a symmetry.
 //! 3. The point group is the largest subgroup of which every M is a symmetry.
-//! 4. Rotation order, kind of the mirror axes' lattice (primitive or centred), and whether reflections are mirrors or glides name one of the 17
-//!    groups.
-//! 5. With the origin at a rotation centre (or on an axis) all w snap to sixths; the mean of the cell over the group is exactly
-//!    symmetric.
+//! 4. Rotation order, kind of the mirror axes' lattice (primitive or centred), and whether
+//!    reflections are mirrors or glides name one of the 17 groups.
+//! 5. With the origin at a rotation centre (or on an axis) all w snap to sixths; the mean of the
+//!    cell over the group is exactly symmetric.
 
 use super::cell::AveragedCell;
 use super::lattice::{Lattice, dot, length};
@@ -19,8 +21,8 @@ use super::operation::{Matrix, Operation, closure, holohedry};
 use crate::raster::Raster;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 
-/// A symmetry of a perfectly known cell correlates at least this much. Clean motifs of four blobs reach up to 0.989 under a
-/// false one, true ones at least 0.997 (`analysis_table groups`).
+/// A symmetry of a perfectly known cell correlates at least this much. Clean motifs of four blobs
+/// reach up to 0.989 under a false one, true ones at least 0.997 (`analysis_table groups`).
 const SYMMETRY_LIMIT: f64 = 0.99;
 
 /// Discount for a cell that is not perfectly known, per unit of missing reliability.
@@ -33,7 +35,8 @@ const NOISY_DOUBT: f64 = 0.7;
 /// Least that is asked for.
 const LEAST_LIMIT: f64 = 0.85;
 
-/// Largest change by a symmetry of the lattice's lengths and angles, relative: nearly square lattices are tried as square.
+/// Largest change by a symmetry of the lattice's lengths and angles, relative: nearly square
+/// lattices are tried as square.
 const METRIC_TOLERANCE: f64 = 0.08;
 
 /// One of the 17 ways in which a pattern can repeat.
@@ -113,7 +116,8 @@ pub struct CellSymmetry {
     pub group: WallpaperGroup,
     /// Number of point symmetries: the fundamental domain is this fraction of the cell.
     pub order: usize,
-    /// Correlation of the cell with its image under the worst symmetry, over the cell's reliability; 1 for p1.
+    /// Correlation of the cell with its image under the worst symmetry, over the cell's
+    /// reliability; 1 for p1.
     pub agreement: f64,
     /// The cell averaged within its fundamental domain, sampled as the averaged cell was.
     pub cell: Raster,
@@ -151,7 +155,8 @@ struct Fit {
     agreement: f64,
 }
 
-/// The largest subgroup of the holohedry all of whose members agree; of equals the one that agrees better.
+/// The largest subgroup of the holohedry all of whose members agree; of equals the one that agrees
+/// better.
 fn largest_symmetric_subgroup(fits: &[Fit], limit: f64) -> Vec<Fit> {
     let good: Vec<&Fit> = fits.iter().filter(|fit| fit.agreement >= limit).collect();
     let mut best: Vec<Fit> = fits.iter().filter(|fit| fit.matrix == Matrix::IDENTITY).copied().collect();
@@ -204,7 +209,8 @@ fn name(point_group: &[Fit], basis: [[f64; 2]; 2]) -> WallpaperGroup {
     }
 }
 
-/// Tests whether a reflection about an axis of a primitive lattice needs no translation along that axis.
+/// Tests whether a reflection about an axis of a primitive lattice needs no translation along that
+/// axis.
 fn is_mirror(fit: &Fit) -> bool {
     let axis = fit.matrix.axes().0.map(|a| a as f64);
     let image = fit.matrix.apply(fit.translation);

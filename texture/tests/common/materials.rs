@@ -1,10 +1,10 @@
 //! The judge of the seven materials: third-octave spectra of held-out strokes, nearest centroid.
 //!
-//! A stroke: 1 s at 60–100 mm/s, the speed wavering as a hand's does, from anywhere on the surface in
-//! any direction. Haptic signal: the rate of the height under the finger, or the force on the tool.
-//! Features: level in dB of every third octave, and of the part below the lowest one. The judge
-//! knows the mean of 30 strokes a material and the spread within materials, and is asked about 30
-//! others.
+//! A stroke: 1 s at 60–100 mm/s, the speed wavering as a hand's does, from anywhere on the surface
+//! in any direction. Haptic signal: the rate of the height under the finger, or the force on the
+//! tool. Features: level in dB of every third octave, and of the part below the lowest one. The
+//! judge knows the mean of 30 strokes a material and the spread within materials, and is asked
+//! about 30 others.
 #![allow(dead_code)]
 
 #[path = "../../../dsp/tests/spectrum/mod.rs"]

@@ -1,5 +1,5 @@
-//! The yardstick for settling: the document's pass over the whole grid, again and again until nothing
-//! moves, and the random fields it is run on.
+//! The yardstick for settling: the document's pass over the whole grid, again and again until
+//! nothing moves, and the random fields it is run on.
 #![allow(dead_code)]
 
 use asperity_dsp::gradient_noise_3d::GradientNoise3d;
@@ -29,8 +29,8 @@ pub struct NaiveSand {
 }
 
 impl NaiveSand {
-    /// `start` in metres, rows first; slopes count as settled `settled_deg` above the talus angle, the
-    /// same as for the sand it is compared with.
+    /// `start` in metres, rows first; slopes count as settled `settled_deg` above the talus angle,
+    /// the same as for the sand it is compared with.
     pub fn new(start: &[f64], n: usize, cell_m: f64, talus_deg: f64, settled_deg: f64) -> Self {
         let rise = |degrees: f64| degrees.to_radians().tan() * cell_m * UNIT;
         let mut heights = vec![WALL; (n + 2) * (n + 2)];
@@ -99,8 +99,8 @@ impl NaiveSand {
     }
 }
 
-/// Heights, metres: white noise far above, above and around the talus angle of 1 mm cells, and hills
-/// and valleys over tens of cells.
+/// Heights, metres: white noise far above, above and around the talus angle of 1 mm cells, and
+/// hills and valleys over tens of cells.
 pub fn random_fields(n: usize, seed: u64) -> [(&'static str, Vec<f64>); 4] {
     let mut rng = Rng::new(seed);
     let mut white =

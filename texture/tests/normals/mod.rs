@@ -57,7 +57,8 @@ pub fn halved(map: &[Raster; 3], filter: FilterType) -> [Raster; 3] {
     channels(&imageops::resize(&picture, w / 2, h / 2, filter))
 }
 
-/// The map as JPEG keeps it: with `half_colours`, two of its three colours at half the size, as most programs do.
+/// The map as JPEG keeps it: with `half_colours`, two of its three colours at half the size, as
+/// most programs do.
 pub fn as_jpeg(map: &[Raster; 3], quality: u8, half_colours: bool) -> [Raster; 3] {
     let mut picture = picture(map);
     if half_colours {
@@ -112,7 +113,8 @@ pub fn halved_heights_by(heights: &Raster, filter: FilterType) -> Raster {
     Raster { width: heights.width / 2, height: heights.height / 2, values }
 }
 
-/// Power of the made heights over the true ones' in each third of the spectrum; of maps that do not tile without their slant and under a window.
+/// Power of the made heights over the true ones' in each third of the spectrum; of maps that do not
+/// tile without their slant and under a window.
 pub fn thirds(made: &Raster, truth: &Raster, tiles: bool) -> [f64; 3] {
     let (w, h) = (truth.width, truth.height);
     let mut fft = Fft2::new(w, h);

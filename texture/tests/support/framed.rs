@@ -1,5 +1,5 @@
-//! Squares in frames, and the six reliefs of the thesis (§8.3) seen from the light: patterns whose outlines are nearly, but
-//! not quite, a pattern of their own on a finer lattice.
+//! Squares in frames, and the six reliefs of the thesis (§8.3) seen from the light: patterns whose
+//! outlines are nearly, but not quite, a pattern of their own on a finer lattice.
 
 #![allow(dead_code, reason = "each user takes what it needs")]
 
@@ -36,7 +36,8 @@ impl Framed {
         })
     }
 
-    /// How much of a texel the line covers, `inside` texels from the square's border. Where the period is whole the line is too.
+    /// How much of a texel the line covers, `inside` texels from the square's border. Where the
+    /// period is whole the line is too.
     fn line(&self, inside: f64) -> f64 {
         if self.period.fract() == 0.0 {
             // Borders that fall on the middle of a texel fall on the same side of it in every cell.
@@ -57,7 +58,8 @@ impl Framed {
         [[self.period, 0.0], [0.0, self.period]]
     }
 
-    /// The audit's kind of grid: sizes, periods, gaps, widths, both corners, without noise and with.
+    /// The audit's kind of grid: sizes, periods, gaps, widths, both corners, without noise and
+    /// with.
     pub fn grid() -> Vec<Self> {
         let mut all = Vec::new();
         for size in [240, 256, 400] {
@@ -109,7 +111,8 @@ pub enum Shape {
 
 pub const SHAPES: [Shape; 3] = [Shape::Spheres, Shape::Ovals, Shape::Quads];
 
-/// Heights, texels, of `across` shapes a side on a picture of `size`², and their translations. Every second row of ovals is moved by half.
+/// Heights, texels, of `across` shapes a side on a picture of `size`², and their translations.
+/// Every second row of ovals is moved by half.
 pub fn thesis_relief(shape: Shape, across: f64, size: usize) -> (Raster, [[f64; 2]; 2]) {
     let period = size as f64 / across;
     // 55 ovals on the area of 36 squares, 85 on that of 64: ten rows.
@@ -146,7 +149,8 @@ fn bevel(distance: f64, half: f64) -> f64 {
     2.0 * width * (1.0 - (1.0 - inside) * (1.0 - inside)).sqrt()
 }
 
-/// How bright a relief is under light from the front: 1/√(1 + p² + q²), the printed condition of the thesis.
+/// How bright a relief is under light from the front: 1/√(1 + p² + q²), the printed condition of
+/// the thesis.
 pub fn frontally_lit(relief: &Raster) -> Raster {
     Raster::from_fn(relief.width, relief.height, |x, y| {
         let p = relief.at(x, y) - relief.at(x.saturating_sub(1), y);

@@ -120,7 +120,8 @@ pub fn picture(kind: Kind, stress: Stress, size: usize, seed: u64) -> (Raster, [
     (lit, basis)
 }
 
-/// Whether a found lattice is the true one: its basis is whole in the true basis and spans all of it, each vector within a tenth.
+/// Whether a found lattice is the true one: its basis is whole in the true basis and spans all of
+/// it, each vector within a tenth.
 pub fn is_lattice(found: [[f64; 2]; 2], truth: [[f64; 2]; 2]) -> bool {
     let [a, b] = truth;
     let area = a[0] * b[1] - a[1] * b[0];
@@ -177,8 +178,8 @@ pub fn blobs(size: usize, radius: f64, seed: u64) -> Raster {
     picture
 }
 
-/// Blobs that keep a distance, as grains and cells do: no pattern, but every grain has neighbours at
-/// about the same distance.
+/// Blobs that keep a distance, as grains and cells do: no pattern, but every grain has neighbours
+/// at about the same distance.
 pub fn grains(size: usize, radius: f64, seed: u64) -> Raster {
     let mut rng = Rng::new(seed);
     let mut centres: Vec<[f64; 2]> = Vec::new();
@@ -203,7 +204,8 @@ pub fn stripes(size: usize, period: f64, turn: f64, noise: f64, seed: u64) -> Ra
     })
 }
 
-/// Waves of any direction whose lengths are nearly one, within this share of it: every place looks alike and nothing repeats.
+/// Waves of any direction whose lengths are nearly one, within this share of it: every place looks
+/// alike and nothing repeats.
 pub fn ring_of_waves(size: usize, length: f64, share: f64, seed: u64) -> Raster {
     let mut rng = Rng::new(seed);
     let waves: Vec<[f64; 3]> = (0..120)

@@ -1,4 +1,5 @@
-//! Motifs of all 17 wallpaper groups, from the generators the International Tables list for the conventional cell.
+//! Motifs of all 17 wallpaper groups, from the generators the International Tables list for the
+//! conventional cell.
 
 #![allow(dead_code, reason = "each user takes what it needs")]
 

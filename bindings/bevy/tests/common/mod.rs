@@ -63,7 +63,8 @@ pub fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, x| peak.max(x.abs()))
 }
 
-/// The recording rendered offline in an engine that is built as the app's was: `plates` of [`plate`], then the probes of an adapter.
+/// The recording rendered offline in an engine that is built as the app's was: `plates` of
+/// [`plate`], then the probes of an adapter.
 pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
     // The recording survives its file.
     let mut text = Vec::new();
@@ -143,7 +144,8 @@ pub fn slid(log: &ContactLog) -> Slid {
     slid
 }
 
-/// A steel ball of 1 cm that fell 13 cm onto the plate: speeds of free fall, its own mass and radius, each flight as long as its rebound says.
+/// A steel ball of 1 cm that fell 13 cm onto the plate: speeds of free fall, its own mass and
+/// radius, each flight as long as its rebound says.
 pub fn assert_bounces(log: &ContactLog) {
     let blows = impacts(log);
     assert!(blows.len() >= 2, "{blows:?}");
@@ -174,7 +176,8 @@ pub fn assert_rolls(log: &ContactLog) {
     }
 }
 
-/// A block of 16 g that slid over the plate from 5 cm on with 0.3 m/s and friction 0.05 until it rested.
+/// A block of 16 g that slid over the plate from 5 cm on with 0.3 m/s and friction 0.05 until it
+/// rested.
 pub fn assert_slides(log: &ContactLog, probe: Option<&str>) {
     let Slid { begins, ends, samples } = slid(log);
     assert_eq!(begins.len(), 1, "{begins:?}");

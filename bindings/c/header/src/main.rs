@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Signs of the documentation that some compilers' code pages do not have, and how they are written without.
+/// Signs of the documentation that some compilers' code pages do not have, and how they are written
+/// without.
 const SIGNS: [(&str, &str); 8] = [
     ("π", " pi "),
     ("…", "..."),

@@ -5,8 +5,9 @@
 //! | [`shape_solve`] | name of the mesh's file, then its bytes | see [`shape_solve`]; all `f64` |
 //! | [`shape_told`] | – | repairs and doubts of the last solve, a line each |
 //!
-//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a sentence that says what is wrong and what would
-//! be right. Numbers are little-endian. Exported functions are safe whatever they are given.
+//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a
+//! sentence that says what is wrong and what would be right. Numbers are little-endian. Exported
+//! functions are safe whatever they are given.
 
 // What is exported keeps its name.
 #![allow(unsafe_code)]
@@ -57,10 +58,12 @@ pub extern "C" fn shape_outbox_bytes() -> usize {
     OUTBOX.with_borrow(Vec::len)
 }
 
-/// Solves a mesh (`.obj`, `.stl`, `.msh`) for at most so many modes, as fine as a preview. `name_bytes`: how long the name in the inbox is; then what it is
-/// made of (Pa, 1, kg/m³; 1/s, 1, s) and its longest side, m, or 0: as the file says, where that is likely. Outbox: how many modes, points and triangles, the struck point,
-/// unknowns, mass in kg; of every mode gain, frequency, decay, amplitude, phase; of every point its place, m; of every triangle its points; of every mode the
-/// motion of every point, kg^−½.
+/// Solves a mesh (`.obj`, `.stl`, `.msh`) for at most so many modes, as fine as a preview.
+/// `name_bytes`: how long the name in the inbox is; then what it is made of (Pa, 1, kg/m³; 1/s, 1,
+/// s) and its longest side, m, or 0: as the file says, where that is likely. Outbox: how many
+/// modes, points and triangles, the struck point, unknowns, mass in kg; of every mode gain,
+/// frequency, decay, amplitude, phase; of every point its place, m; of every triangle its points;
+/// of every mode the motion of every point, kg^−½.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)] // Numbers are all that goes over without a generator of bindings.
 pub extern "C" fn shape_solve(

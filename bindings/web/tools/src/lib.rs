@@ -1,12 +1,14 @@
-//! asperity's offline tools as WebAssembly, for a worker of the page: one recorded hit becomes modes, one photograph a relief.
+//! asperity's offline tools as WebAssembly, for a worker of the page: one recorded hit becomes
+//! modes, one photograph a relief.
 //!
 //! | call | inbox | outbox |
 //! |---|---|---|
 //! | [`tools_fit`] | samples of one channel | modes, strongest first: frequency, decay, amplitude, phase; all `f64` |
 //! | [`tools_photo`] | brightness, row after row | width, height, relief, micro-relief, then heights and roughness, each 0–1; all `f64` |
 //!
-//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a sentence that says what is wrong and what would
-//! be right. Numbers are little-endian. Exported functions are safe whatever they are given.
+//! A call that can fail answers 1 when it is done and 0 when it is not; then the outbox holds a
+//! sentence that says what is wrong and what would be right. Numbers are little-endian. Exported
+//! functions are safe whatever they are given.
 
 // What is exported keeps its name.
 #![allow(unsafe_code)]
@@ -38,13 +40,13 @@ pub extern "C" fn tools_inbox(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Where the last answer lies.
+/// Place of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn tools_outbox() -> *const u8 {
     OUTBOX.with_borrow(|outbox| outbox.as_ptr())
 }
 
-/// How long it is, bytes.
+/// Length of it, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn tools_outbox_bytes() -> usize {
     OUTBOX.with_borrow(Vec::len)
@@ -59,8 +61,9 @@ pub extern "C" fn tools_fit(rate_hz: f64) -> u32 {
     }))
 }
 
-/// Makes a relief of a photograph. Inbox: brightness as stored (sRGB), 0–1; `texel_m`: what a texel is on the surface, m; `relief_m`: height from the
-/// lowest to the highest point, m, or 0: what contrast gives.
+/// Makes a relief of a photograph. Inbox: brightness as stored (sRGB), 0–1; `texel_m`: what a texel
+/// is on the surface, m; `relief_m`: height from the lowest to the highest point, m, or 0: what
+/// contrast gives.
 #[unsafe(no_mangle)]
 pub extern "C" fn tools_photo(width: usize, height: usize, texel_m: f64, relief_m: f64) -> u32 {
     done(relief(width, height, texel_m, relief_m))
@@ -72,7 +75,8 @@ fn numbers() -> Vec<f64> {
 
 fn fitted(rate_hz: f64) -> Result<Fit, String> {
     let mut samples = numbers();
-    // Everything that rings after a hit lies behind its loudest sample; what lies long before is not looked at.
+    // Everything that rings after a hit lies behind its loudest sample; what lies long before is
+    // not looked at.
     let longest = (LONGEST_S * rate_hz).clamp(0.0, 1e8) as usize;
     samples.truncate(longest);
     let recording =

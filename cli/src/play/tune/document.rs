@@ -1,4 +1,5 @@
-//! A scene file as whoever tunes it has it: every number that the registry knows, in the tables that the file has, and the text around them as it is.
+//! A scene file as whoever tunes it has it: every number that the registry knows, in the tables
+//! that the file has, and the text around them as it is.
 
 use crate::error::CliError;
 use asperity::parameters::{self, Changes, Parameter};

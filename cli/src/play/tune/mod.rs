@@ -1,7 +1,9 @@
-//! `asperity play SCENE.toml --tune`: the scene sounds, again and again, and a page on the loopback address turns its numbers.
+//! `asperity play SCENE.toml --tune`: the scene sounds, again and again, and a page on the loopback
+//! address turns its numbers.
 //!
-//! What is turned is applied to what sounds, as `--watch` does; nothing is written until the page says so, and then only what was turned: comments and
-//! everything else in the file stay. A finger on the page touches the scene too. Without a sound card a thread renders in real time, unheard.
+//! What is turned is applied to what sounds, as `--watch` does; nothing is written until the page
+//! says so, and then only what was turned: comments and everything else in the file stay. A finger
+//! on the page touches the scene too. Without a sound card a thread renders in real time, unheard.
 
 mod desk;
 mod document;
@@ -26,7 +28,8 @@ use document::Document;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Lead of events over the sound, s: those of the log as those of a finger on the page, because a scene takes them in order of time.
+/// Lead of events over the sound, s: those of the log as those of a finger on the page, because a
+/// scene takes them in order of time.
 const LEAD_S: f64 = 0.06;
 /// Interval at which the page is read.
 const STEP: Duration = Duration::from_millis(5);
@@ -157,8 +160,9 @@ impl Tuned<'_> {
         Ok(())
     }
 
-    /// Reports an event, at the time of the last one at the earliest: the log and a finger take turns, and neither's stamps wait for the other's.
-    /// (Asked first, the scene would refuse the later one, and tell whoever looks that it was lost.)
+    /// Reports an event, at the time of the last one at the earliest: the log and a finger take
+    /// turns, and neither's stamps wait for the other's. (Asked first, the scene would refuse the
+    /// later one, and tell whoever looks that it was lost.)
     fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
         let time_s = time_s.max(self.latest_s);
         self.scene.report(time_s, event).map_err(|refused| refused.reason)?;

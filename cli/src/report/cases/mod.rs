@@ -9,9 +9,9 @@
 //! | `fast` | micro-relief, R = 0.5 | 0.8 | 0.5 | wavelengths pass in a few samples |
 //! | `light` | micro-relief, R = 0.5 | 0.1 | 0.05 | hardly pressed, the pad hops |
 //!
-//! Wavelengths, heights and phases of a ground are drawn from a seed, so that there are as many profiles of a kind as wanted. What is
-//! stated of a case is the rms over [`SEEDS`] (of integrators over those whose stroke forgets how it began); the scene that is written is that of
-//! the first.
+//! Wavelengths, heights and phases of a ground are drawn from a seed, so that there are as many
+//! profiles of a kind as wanted. What is stated of a case is the rms over [`SEEDS`] (of integrators
+//! over those whose stroke forgets how it began); the scene that is written is that of the first.
 
 mod files;
 mod render;
@@ -96,7 +96,8 @@ pub const FROM_REPORTS: [Case; 3] = [
 type Height = Box<dyn Fn(f64) -> f64>;
 
 impl Case {
-    /// The ground as a map along the stroke, 0–1, the equation that the map is drawn from, and the height of 1 over 0, m.
+    /// The ground as a map along the stroke, 0–1, the equation that the map is drawn from, and the
+    /// height of 1 over 0, m.
     pub fn relief(&self, seed: u64) -> Option<(Vec<f64>, Height, f64)> {
         let (heights, _) = self.ground.map(seed)?;
         self.ground.height(seed).map(|(height, relief_m)| (heights, height, relief_m))
@@ -131,7 +132,8 @@ impl Ground {
         Some((places.map(height).collect(), relief_m))
     }
 
-    /// Height at a share of the map's length, 0–1, as the map is drawn from it, and the height of 1 over 0, m.
+    /// Height at a share of the map's length, 0–1, as the map is drawn from it, and the height of 1
+    /// over 0, m.
     fn height(self, seed: u64) -> Option<(Height, f64)> {
         let mut rng = Rng::new(seed);
         match self {

@@ -48,7 +48,8 @@ pub struct Report {
     /// Factor on the heights that contrast gives; may be passed again as `--calibration`.
     calibration: f64,
     method: &'static str,
-    /// Which way up: `bright-is-high`, `bright-is-deep`, `light` (shading under a told light), or `undecided` (heights are as if bright were high).
+    /// Which way up: `bright-is-high`, `bright-is-deep`, `light` (shading under a told light), or
+    /// `undecided` (heights are as if bright were high).
     sign: &'static str,
     /// 0 nothing known, 1 told; decided from 0.5.
     sign_confidence: f64,

@@ -44,7 +44,8 @@ fn a_hand_that_reaches_is_followed_to_a_few_micrometres_between_its_reports() {
     }
 }
 
-/// How far and how fast a path goes beyond a finger that stops dead at some time between two reports, m and m/s.
+/// How far and how fast a path goes beyond a finger that stops dead at some time between two
+/// reports, m and m/s.
 fn beyond_a_stop(mode: PathMode, motion: impl Fn(f64) -> [f64; 2], stop_s: f64) -> [f64; 2] {
     let [stop_m, stop_m_s] = motion(stop_s);
     let stopped = |t: f64| if t < stop_s { motion(t) } else { [stop_m, 0.0] };
@@ -74,14 +75,16 @@ fn a_finger_that_stops_dead_is_overrun_by_what_it_would_have_gone_until_the_next
             }
         }
         std::println!("{mode:?}: {:.1} ms further, {:.2} times as fast", 1e3 * worst[0], worst[1]);
-        // A report comes at most 16.7 ms late; the filter's way back is no faster than the finger was.
+        // A report comes at most 16.7 ms late; the filter's way back is no faster than the finger
+        // was.
         assert!(worst[0] < 0.018 && worst[1] < 1.2, "{mode:?}: {worst:?}");
     }
 }
 
 #[test]
 fn velocities_that_do_not_belong_to_their_places_bend_nothing() {
-    // A tick that moves by the velocity it ends with, another with a tenth of noise, and one with a tracker's places.
+    // A tick that moves by the velocity it ends with, another with a tenth of noise, and one with a
+    // tracker's places.
     let mut rng = Rng::new(5);
     for (late_s, rough, noise_m) in [(1.0 / 60.0, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 5e-5)] {
         let motion = |t: f64| reach(0.09, 0.55, t);

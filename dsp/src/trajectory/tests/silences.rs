@@ -9,8 +9,8 @@ fn reported_at(times_s: &[f64], speed: f64, reported: bool) -> Vec<PathEvent> {
     times_s.iter().map(|t| event((t * RATE_HZ).round() as u64, speed * t, velocity)).collect()
 }
 
-/// Fastest and slowest speed of a path over the finger's, as its positions show it, and how far from its own lag it ends, m.
-/// Every event has to be followed: a jump is a step.
+/// Fastest and slowest speed of a path over the finger's, as its positions show it, and how far
+/// from its own lag it ends, m. Every event has to be followed: a jump is a step.
 fn speeds(mode: PathMode, events: &[PathEvent], speed: f64) -> (f64, f64, f64) {
     let design = design(mode);
     let mut path = Trajectory::begin(&design, &events[0]);

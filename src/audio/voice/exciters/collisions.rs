@@ -13,7 +13,8 @@ pub(super) struct Collisions {
 }
 
 impl Collisions {
-    /// Sends a collision's pulse on its way, where collisions sound; whether it had to be shortened.
+    /// Sends a collision's pulse on its way, where collisions sound; whether it had to be
+    /// shortened.
     pub(super) fn strike(
         &mut self,
         by: &Excited<'_>,
@@ -24,8 +25,8 @@ impl Collisions {
         if !by.slot.surface.excitation.has(Exciter::Collisions) {
             return false;
         }
-        // An onset is dated within the step that ends at its row, and a force is heard as if that step's middle were the row: both are
-        // half a step late.
+        // An onset is dated within the step that ends at its row, and a force is heard as if that
+        // step's middle were the row: both are half a step late.
         let half = onset.offset + 0.5;
         let (sample, offset) = if half < 1.0 { (row.saturating_sub(1), half) } else { (row, half - 1.0) };
         let own_s = by.slot.stroking.hertz.contact_time_s(onset.closing_m_s);

@@ -1,4 +1,5 @@
-//! The alternating contact force sounds by itself, because a pad that never lifts off would be silent (ours, not the document's).
+//! The alternating contact force sounds by itself, because a pad that never lifts off would be
+//! silent (ours, not the document's).
 
 use asperity_dsp::hertz::{self, FORCE_HISTORY};
 use asperity_texture::height_field::MAX_BLOCK;
@@ -11,7 +12,7 @@ impl ForceRun {
         Self([0.0; FORCE_HISTORY + MAX_BLOCK])
     }
 
-    /// Where the impulses of `n` samples go, N·s.
+    /// Room for the impulses of `n` samples, N·s.
     pub(in crate::audio::voice) fn samples(&mut self, n: usize) -> &mut [f64] {
         &mut self.0[FORCE_HISTORY..][..n]
     }

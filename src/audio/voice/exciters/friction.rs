@@ -1,7 +1,8 @@
-//! Friction rubs the touched body: how fast and how hard, for the body's own coupled step (`prepared::body_rub`).
+//! Friction rubs the touched body: how fast and how hard, for the body's own coupled step
+//! (`prepared::body_rub`).
 //!
-//! A contact rubs along the line on which it moves. The line turns with the motion, but not round: a bow that goes back rubs along the
-//! same line with a negative speed.
+//! A contact rubs along the line on which it moves. The line turns with the motion, but not round:
+//! a bow that goes back rubs along the same line with a negative speed.
 
 use super::PadSample;
 use crate::audio::voice::rub_block::RubBlock;
@@ -23,7 +24,8 @@ impl Default for Rubbing {
 }
 
 impl Rubbing {
-    /// The line turns to where it moves: called at the steps of the absolute sample grid, and when it begins.
+    /// The line turns to where it moves: called at the steps of the absolute sample grid, and when
+    /// it begins.
     pub(super) fn turn(&mut self, velocity_m_s: [f64; 2]) {
         let [u, v] = velocity_m_s;
         let speed_m_s = libm::hypot(u, v);

@@ -13,7 +13,7 @@ impl Grains {
         Self(Rng::new(seed))
     }
 
-    /// What gives way during one sample, as often as the surface says.
+    /// Draws what gives way during one sample, as often as the surface says.
     pub(super) fn shift(&mut self, by: &Excited<'_>, sample: u64, pulses: &mut ImpulseRing) {
         let draw = self.0.uniform();
         let expected = by.reaction.grain_rate_per_s / by.sample_rate_hz;

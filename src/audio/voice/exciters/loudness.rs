@@ -1,9 +1,9 @@
 //! Loudness: the more of a contact touches, the more of it sounds.
 //!
-//! It is worked out at the steps of the absolute sample grid, so that it depends on no split into blocks, and goes along a straight line
-//! between two of them.
+//! It is worked out at the steps of the absolute sample grid, so that it depends on no split into
+//! blocks, and goes along a straight line between two of them.
 
-/// How loud a contact is.
+/// Loudness of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::audio::voice) struct Loudness {
     /// At the last step of the grid, and at the next.
@@ -11,7 +11,7 @@ pub(in crate::audio::voice) struct Loudness {
 }
 
 impl Loudness {
-    /// Of a contact that begins.
+    /// Loudness of a contact that begins.
     pub(in crate::audio::voice) fn of(loudness: f64) -> Self {
         Self { ends: [loudness; 2] }
     }
@@ -21,7 +21,8 @@ impl Loudness {
         self.ends = [self.ends[1], loudness];
     }
 
-    /// Weighs what a contact gives, of which the first sample has this place; `slow_step` samples lie between two steps of the grid.
+    /// Weighs what a contact gives, of which the first sample has this place; `slow_step` samples
+    /// lie between two steps of the grid.
     pub(in crate::audio::voice) fn weigh(&self, position: u64, slow_step: u64, samples: &mut [f64]) {
         let [from, to] = self.ends;
         let first = (position % slow_step) as u32 + 1;

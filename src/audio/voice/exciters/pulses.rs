@@ -1,7 +1,8 @@
 //! Pulses of collisions and grains on their way to the body, without their mean.
 //!
-//! A collision pushes and never pulls, so that a stroke of many holds the body bent: inaudible, but of the sound's energy
-//! and head room. A high-pass of second order takes the bend and leaves each pulse its shape.
+//! A collision pushes and never pulls, so that a stroke of many holds the body bent: inaudible, but
+//! of the sound's energy and head room. A high-pass of second order takes the bend and leaves each
+//! pulse its shape.
 
 use super::{LONGEST_COLLISION_S, STILL_N_S};
 use crate::prepared::impulse_ring::ImpulseRing;
@@ -29,7 +30,8 @@ impl Pulses {
         }
     }
 
-    /// Takes the impulses of the samples from `position` on, N·s; false, and nothing written, where there are none.
+    /// Takes the impulses of the samples from `position` on, N·s; false, and nothing written, where
+    /// there are none.
     pub(super) fn take(&mut self, high_pass: &Butterworth, position: u64, out: &mut [f64]) -> bool {
         // At the steps of the absolute grid, so that it depends on no split into blocks.
         if position.is_multiple_of(MAX_BLOCK as u64) && self.are_still(position) {

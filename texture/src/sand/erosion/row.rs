@@ -1,18 +1,19 @@
 //! One row of a tile slides against itself and against the row below.
 //!
-//! In this order: straight down, the two diagonals down, and along the row in two halves (cell 0 with 1,
-//! 2 with 3, …; then 1 with 2, 3 with 4, …), one before the others and one after. Within each of these
-//! steps no cell belongs to two pairs, so that the order of the pairs does not matter and any number of
-//! them can be worked on at once: vectors, which the compiler makes of the loops, give the same sand as one pair after another.
+//! In this order: straight down, the two diagonals down, and along the row in two halves (cell 0
+//! with 1, 2 with 3, …; then 1 with 2, 3 with 4, …), one before the others and one after. Within
+//! each of these steps no cell belongs to two pairs, so that the order of the pairs does not matter
+//! and any number of them can be worked on at once: vectors, which the compiler makes of the loops,
+//! give the same sand as one pair after another.
 //!
-//! A wall is so low that its difference to any sand, wrapped to 32 bits, is above that of any sand to
-//! any other: one comparison tells both that a slope is too steep and that it is one of sand.
+//! A wall is so low that its difference to any sand, wrapped to 32 bits, is above that of any sand
+//! to any other: one comparison tells both that a slope is too steep and that it is one of sand.
 use super::TILE;
 use crate::sand::grid::{SPAN, SandGrid};
 use asperity_dsp::simd::{Level, at_level};
 
-/// Differences of height along an edge and along a diagonal: the one that sand slides to, and the one
-/// above which it slides.
+/// Differences of height along an edge and along a diagonal: the one that sand slides to, and the
+/// one above which it slides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Steepness {
     pub axis: (i32, i32),

@@ -1,4 +1,5 @@
-//! Dragging: the way of one contact's tool through a frame, in as many parts as the sand slides in it.
+//! Dragging: the way of one contact's tool through a frame, in as many parts as the sand slides in
+//! it.
 
 use super::{PASSES_A_FRAME, Pose, SandSimulation, level_around};
 use crate::sand::erosion::Erosion;

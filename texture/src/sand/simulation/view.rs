@@ -1,8 +1,8 @@
 //! Views of the sand that are shown to the audio half.
 //!
 //! The patch around a contact shows the sand *without* the print of its own tool: the print is
-//! filled up to the level around it, because it moves along with the tool and is not what the tool meets
-//! next; only then is a frame's lag not heard as a 60 Hz saw. The tool's own depth is in the
+//! filled up to the level around it, because it moves along with the tool and is not what the tool
+//! meets next; only then is a frame's lag not heard as a 60 Hz saw. The tool's own depth is in the
 //! surface's compliance.
 
 use super::{Pose, SandSimulation};

@@ -1,9 +1,11 @@
-//! `fundsp-bank speed MODES`: mode-samples a nanosecond of banks built from the crate `fundsp`, force in every sample:
-//! its eight-lane biquads by its `process` for blocks, by its `tick` for samples, by `tick` with the states in a local
-//! copy for a block, and one resonator a mode. Best of many segments.
+//! `fundsp-bank speed MODES`: mode-samples a nanosecond of banks built from the crate `fundsp`,
+//! force in every sample: its eight-lane biquads by its `process` for blocks, by its `tick` for
+//! samples, by `tick` with the states in a local copy for a block, and one resonator a mode. Best
+//! of many segments.
 //!
-//! `fundsp-bank pitch RATE_HZ [NAME < RAW]`: what ring a mode of 30 Hz with a T60 of 10 s has, of ours, of these, and of
-//! raw little-endian f32 samples of an impulse response on the standard input.
+//! `fundsp-bank pitch RATE_HZ [NAME < RAW]`: what ring a mode of 30 Hz with a T60 of 10 s has, of
+//! ours, of these, and of raw little-endian f32 samples of an impulse response on the standard
+//! input.
 
 mod ring;
 
