@@ -12,9 +12,10 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 17] = [
+const READ: [&str; 18] = [
     "scene",
     "recording",
+    "further",
     "merge",
     "mesh",
     "body",

@@ -217,6 +217,9 @@ fn several_strikes_become_strike_positions_of_one_body() {
         assert!((share - gains[k]).abs() < 0.05, "{} Hz: {share}", mode.frequency_hz);
     }
     assert_eq!(modes(folder, "body.strike1.modes.json").len(), 5);
+    // Takes of one object are the same body, named one after the other.
+    fit(folder, &["a.wav", "b.wav", "--family", "-o", "family.modes.json"]);
+    assert_eq!(asperity_model(folder, "family.modes.json"), body);
 }
 
 /// Sides of a plate held at its edges, m, and the places where it is struck.

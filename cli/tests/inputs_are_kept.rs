@@ -14,12 +14,13 @@ use support::{MODES, asperity, assert_refused, stroke, told};
 /// A verb and its inputs, `OUT` standing for the output, and which file the output is.
 type Case = (&'static [&'static str], &'static str);
 
-const CASES: [Case; 27] = [
+const CASES: [Case; 28] = [
     (&["fit", "hit.json", "-o", "OUT"], "hit.json"),
     (&["fit", "hit.wav", "-o", "a.json", "--residual", "OUT"], "hit.wav"),
     (&["fit", "hit.wav", "-o", "a.json", "--resynthesis", "OUT"], "hit.wav"),
     (&["fit", "hit.wav", "--merge", "other.wav", "-o", "a.json", "--residual", "OUT"], "other.wav"),
     (&["fit", "hit.wav", "--merge", "other.wav", "--mesh", "shape.json", "-o", "OUT"], "shape.json"),
+    (&["fit", "hit.wav", "other.wav", "--family", "-o", "a.json", "--residual", "OUT"], "other.wav"),
     (&["fit", "hit.svg", "-o", "a.json", "--plot", "OUT"], "hit.svg"),
     (&["fit", "hit.csv", "-o", "a.json", "--csv", "OUT"], "hit.csv"),
     (&["modes", "mesh.json", "-o", "OUT"], "mesh.json"),

@@ -45,10 +45,10 @@ pub struct Options {
     pub recording: PathBuf,
     /// With --family: further takes, hits of the same object
     #[arg(value_name = "TAKE.wav", requires = "family")]
-    pub takes: Vec<PathBuf>,
+    pub further: Vec<PathBuf>,
     /// Make one body of all the recordings: poles in common, and each take's own excitation as one
     /// of the body's strike positions
-    #[arg(long, requires = "takes")]
+    #[arg(long, requires = "further")]
     pub family: bool,
     /// Modes file to write
     #[arg(short, long = "output", value_name = "OUT.modes.json")]
@@ -130,7 +130,7 @@ impl Options {
     pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
         Self {
             recording,
-            takes: Vec::new(),
+            further: Vec::new(),
             family: false,
             output,
             impulse: 0.01,
@@ -160,7 +160,7 @@ impl Options {
 
     /// The further recordings of the same object: of `--family`, and of `--merge`.
     fn others(&self) -> impl Iterator<Item = &PathBuf> {
-        self.takes.iter().chain(&self.merge)
+        self.further.iter().chain(&self.merge)
     }
 
     fn fit_options(&self) -> FitOptions {
