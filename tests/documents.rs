@@ -162,7 +162,7 @@ fn documentation_comments_begin_with_a_noun() {
             let word = |first: &&str| {
                 says.strip_prefix(*first).is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
             };
-            if begins && NO_NOUN.iter().any(|first| word(&first)) {
+            if begins && NO_NOUN.iter().any(word) {
                 found.push(format!("{}:{}", inside.display(), number + 1));
             }
         }

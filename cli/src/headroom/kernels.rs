@@ -82,9 +82,8 @@ pub(super) fn measured() -> Result<Kernels, CliError> {
     }
     let median = |times: Vec<f64>| Timing::of(times).median;
     let named = kernels.iter().zip(times);
-    let rows: Vec<KernelRow> = named
-        .map(|((kernel, _), times)| KernelRow { kernel: *kernel, ns_per_sample: median(times) })
-        .collect();
+    let rows: Vec<KernelRow> =
+        named.map(|((kernel, _), times)| KernelRow { kernel, ns_per_sample: median(times) }).collect();
     Ok(Kernels {
         sum_ns_per_sample: rows.iter().map(|row| row.ns_per_sample).sum(),
         rows,

@@ -23,16 +23,17 @@ pub struct PathBlock<'a> {
     pub contact: usize,
     /// True where [`SurfaceBlock::gradient`] is read; a source may leave it as it is otherwise.
     pub slopes: bool,
-    /// True where only heights, roughness and power are read: a [rigid](Properties::is_rigid)
+    /// True where only heights, roughness and power are read: a [rigid](super::Properties::is_rigid)
     /// source may then leave the rest as it is.
     pub heights_only: bool,
     /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not
-    /// [prepared](Setup::tip_radii_m) for it is ridden by a point.
+    /// [prepared](super::Setup::tip_radii_m) for it is ridden by a point.
     pub tip_radius_m: f64,
     /// Places of the body that the path lies at, m, one a sample; empty where the surface is a
     /// plane of its body. A block of stuff is cut there; a sheet ignores it.
     pub at_m: &'a [[f64; 3]],
-    /// The least and the greatest coordinates of the path, where they are known ([`bounds`]).
+    /// The least and the greatest coordinates of the path, where they are known
+    /// ([`bounds`](super::bounds)).
     pub bounds_m: Option<[[f64; 2]; 2]>,
     /// Asks for [`SurfaceBlock::power`]: a mean square above which more makes no difference, m².
     pub full_power_m2: Option<f64>,

@@ -6,7 +6,7 @@ pub enum TouchKind {
     /// A contact begins, before anything is read for it: what was kept of an earlier contact of
     /// this number is dropped.
     Begins,
-    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`] samples of the absolute
+    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`](super::MAX_BLOCK) samples of the absolute
     /// grid.
     #[default]
     Presses,
@@ -22,7 +22,7 @@ pub enum TouchKind {
 pub struct Touch {
     /// Kind of touch.
     pub kind: TouchKind,
-    /// The contact's slot, as in [`PathBlock::contact`].
+    /// The contact's slot, as in [`PathBlock::contact`](super::PathBlock::contact).
     pub contact: usize,
     /// Absolute index of the sample it belongs to.
     pub sample: u64,
