@@ -81,7 +81,8 @@ proptest! {
         for t in times {
             let at = |clip: &Clip| clip.amplitude.iter().find(|p| (p.time_s - t).abs() < 1e-7).map(|p| p.amplitude);
             let (was, is) = (at(&clip).unwrap(), at(&back));
-            prop_assert!(is.is_some_and(|is| (was - is).abs() < 1e-6), "at {t} s: {was} {is:?}");
+            // A ramp may rise by 100 a second, and times agree to 1e-7 s.
+            prop_assert!(is.is_some_and(|is| (was - is).abs() < 1e-5), "at {t} s: {was} {is:?}");
         }
         let strokes = |clip: &Clip| clip.amplitude.iter().filter(|p| p.emphasis.is_some()).count();
         prop_assert!(strokes(&back) <= strokes(&clip));

@@ -23,8 +23,8 @@ pub struct PathBlock<'a> {
     pub contact: usize,
     /// True where [`SurfaceBlock::gradient`] is read; a source may leave it as it is otherwise.
     pub slopes: bool,
-    /// True where only heights, roughness and power are read: a [rigid](super::Properties::is_rigid)
-    /// source may then leave the rest as it is.
+    /// True where only heights, roughness and power are read: a
+    /// [rigid](super::Properties::is_rigid) source may then leave the rest as it is.
     pub heights_only: bool,
     /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not
     /// [prepared](super::Setup::tip_radii_m) for it is ridden by a point.

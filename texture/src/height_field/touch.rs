@@ -6,8 +6,8 @@ pub enum TouchKind {
     /// A contact begins, before anything is read for it: what was kept of an earlier contact of
     /// this number is dropped.
     Begins,
-    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`](super::MAX_BLOCK) samples of the absolute
-    /// grid.
+    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`](super::MAX_BLOCK) samples
+    /// of the absolute grid.
     #[default]
     Presses,
     /// A tip stands `depth_m` below the untouched surface: which force carries it there?
