@@ -48,8 +48,8 @@ fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() 
     assert!(share <= most, "{share}");
 }
 
-/// Whether more wants to run than there are processors, by the system's own word; where it has
-/// none, yes.
+/// Tests whether more wants to run than there are processors, by the system's own word; where it
+/// has none, yes.
 fn others_are_busy() -> bool {
     let processors = std::thread::available_parallelism().map_or(1.0, |count| count.get() as f64);
     let load = std::fs::read_to_string("/proc/loadavg").ok();

@@ -808,7 +808,7 @@ void asp_render_interleaved(struct asp_renderer *renderer,
 /// least audible work is left out. For the audio thread.
 void asp_report_load(struct asp_renderer *renderer, float load);
 
-/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples
+/// Outputs of a renderer: haptic channels, audio buses, their rate in Hz, and by how many samples
 /// all of them lag behind the stamps of their events (sound by two samples of the rate inside
 /// more). Any of the places may be NULL.
 int32_t asp_signals(struct asp_renderer *renderer,
@@ -835,7 +835,7 @@ int32_t asp_report(struct asp_scene *scene,
 /// time. For a level that restarts, under the exact clock; a live one finds out by itself.
 int32_t asp_reset(struct asp_scene *scene);
 
-/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
+/// Sets the game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
 /// clock.
 int32_t asp_set_time_scale(struct asp_scene *scene, double scale);
 
@@ -849,7 +849,7 @@ int32_t asp_get_stats(struct asp_scene *scene, struct asp_stats *stats);
 /// Peak level of each bus as a meter shows it, linear; buses beyond those of the scene are 0.
 int32_t asp_bus_peaks(struct asp_scene *scene, float *peaks, uint32_t count);
 
-/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when
+/// Reasons against anything being heard or felt, a line a reason, the likeliest first; "" when
 /// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 int32_t asp_why_silent(struct asp_scene *scene, char *reasons, uint32_t size);
 
@@ -857,7 +857,7 @@ int32_t asp_why_silent(struct asp_scene *scene, char *reasons, uint32_t size);
 /// is how many things.
 int32_t asp_collect(struct asp_scene *scene, uint32_t *freed);
 
-/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds
+/// Fault of this thread's last call, "" if nothing was. It is never null, and holds
 /// until the thread's next call.
 const char *asp_last_error(void);
 
@@ -880,7 +880,7 @@ int32_t asp_unity_slot(struct asp_renderer *renderer, uint32_t *slot);
 /// Version of the library: major 65536 + minor 256 + patch.
 uint32_t asp_version(void);
 
-/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`,
+/// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
 /// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
 /// where a library lies beside another one's header; structs of an older header of this interface

@@ -199,7 +199,7 @@ pub unsafe extern "C" fn asp_report_load(renderer: *mut asp_renderer, load: f32)
     });
 }
 
-/// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples
+/// Outputs of a renderer: haptic channels, audio buses, their rate in Hz, and by how many samples
 /// all of them lag behind the stamps of their events (sound by two samples of the rate inside
 /// more). Any of the places may be NULL.
 #[unsafe(no_mangle)]

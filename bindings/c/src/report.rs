@@ -74,7 +74,7 @@ pub unsafe extern "C" fn asp_reset(scene: *mut asp_scene) -> i32 {
     enter(|| SCENES.hold(scene as usize)?.scene.reset().map_err(|error| refused(&error)))
 }
 
-/// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
+/// Sets the game seconds a second of audio, 0.01 to 100, from the last report on; for the exact
 /// clock.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_time_scale(scene: *mut asp_scene, scale: f64) -> i32 {

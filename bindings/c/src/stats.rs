@@ -168,7 +168,7 @@ pub unsafe extern "C" fn asp_bus_peaks(scene: *mut asp_scene, peaks: *mut f32, c
     })
 }
 
-/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when
+/// Reasons against anything being heard or felt, a line a reason, the likeliest first; "" when
 /// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {

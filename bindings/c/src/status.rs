@@ -59,7 +59,7 @@ pub(crate) fn keep(sentence: Option<&str>) {
     let _ = LAST.try_with(|last| last.replace(text));
 }
 
-/// What was wrong with this thread's last call, "" if nothing was. It is never null, and holds
+/// Fault of this thread's last call, "" if nothing was. It is never null, and holds
 /// until the thread's next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_last_error() -> *const c_char {

@@ -51,7 +51,7 @@ pub extern "C" fn asp_version() -> u32 {
         | part(env!("CARGO_PKG_VERSION_PATCH"))
 }
 
-/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`,
+/// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
 /// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
 /// where a library lies beside another one's header; structs of an older header of this interface

@@ -211,7 +211,7 @@ impl AsperityFinger3D {
     }
 }
 
-/// What the finger touches: a surface, where, and how u and v run there in the space of what is
+/// Surface under the finger, its place, and how u and v run there in the space of what is
 /// touched, of length 1.
 #[derive(Clone, Copy)]
 struct Hit {

@@ -8,7 +8,7 @@ use godot::classes::{BaseMaterial3D, Texture2D};
 use godot::prelude::*;
 use toml::{Table, Value};
 
-/// What a finger feels of a surface, from the maps the renderer draws. Numbers below 0 are not
+/// Surface as a finger feels it, from the maps the renderer draws. Numbers below 0 are not
 /// told: then `table`, the body's material or the engine's default says them.
 #[derive(GodotClass)]
 #[class(init, base = Resource)]
