@@ -158,8 +158,6 @@ export class Engine {
   image(): Uint8Array;
   fill(image: Uint8Array, from: number, to: number): void;
   know(told: Told): void;
-  /** This engine, going on in an instance of a module with the same memory. */
-  moved(module: WebAssembly.Module): Engine;
 }
 
 export interface EngineOptions extends Partial<PrepareOptions> {
@@ -168,8 +166,6 @@ export interface EngineOptions extends Partial<PrepareOptions> {
   log?: string | Event[];
   /** Where asperity.wasm and worklet.js lie, if not beside asperity.js. */
   wasm?: string | URL;
-  /** `wasm` is only a part of the engine, enough for what is prepared; `complete` brings the whole one. */
-  part?: boolean;
   worklet?: string | URL;
 }
 
@@ -182,7 +178,7 @@ export interface Frame {
   time: number;
 }
 
-/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`, `lacking` (a part of the engine could not go on; the whole is fetched, catches up and goes on). */
+/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`. */
 export class WebEngine extends EventTarget {
   readonly context: BaseAudioContext;
   readonly node: AudioWorkletNode;
@@ -200,8 +196,6 @@ export class WebEngine extends EventTarget {
   impact(body: string, blow: Blow): void;
   /** Another scene in the place of this one, without a gap. */
   take(options: Partial<PrepareOptions> & { prepared?: Prepared }): Promise<void>;
-  /** Goes on with the whole engine (of `asperity.wasm`, if nothing else is said) where a part has begun to play. */
-  complete(wasm?: string | URL): Promise<void>;
   /** Changes the scene that sounds: bodies, surfaces, gains. */
   apply(scene: string, options?: { files?: SceneParts['files']; pictures?: SceneParts['pictures'] }): Promise<{ done: string[]; waiting: string[] }>;
   mute(muted: boolean): Promise<void>;
@@ -211,7 +205,7 @@ export class WebEngine extends EventTarget {
   setAudioGain(bus: number, gain: number): Promise<void>;
   setHapticGain(channel: number, gain: number): Promise<void>;
   stats(): Promise<{ stats: Stats; why_silent: string[]; memory: number }>;
-  /** All that was reported, as a contact log that `asperity render` plays again; of a part of an engine when the whole one has come. */
+  /** All that was reported, as a contact log that `asperity render` plays again. */
   log(): Promise<string>;
   close(): void;
 }

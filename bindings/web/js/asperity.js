@@ -33,8 +33,7 @@ export function addWorklet(context, url = WORKLET) {
 
 /**
  * An engine that plays in `context`. `options`: `scene` (the text of a scene file), `files` and `pictures` that it names, or `prepared` (what
- * `prepare` has answered in a worker); `log` (a contact log to play by itself, with exact times); `wasm` (where the engine lies); `part` (that is only
- * a part of the engine, which is enough for what is prepared: see `complete`).
+ * `prepare` has answered in a worker); `log` (a contact log to play by itself, with exact times); `wasm` (where the engine lies).
  */
 export async function createEngine(context, options = {}) {
   const { bytes, module } = await load(options.wasm);
@@ -47,7 +46,7 @@ export async function createEngine(context, options = {}) {
     numberOfInputs: 0,
     numberOfOutputs: 2,
     outputChannelCount: [prepared.told.buses > 1 ? prepared.told.buses : 2, haptic],
-    processorOptions: { wasm: bytes, part: options.part, prepared, log },
+    processorOptions: { wasm: bytes, prepared, log },
   });
   return new WebEngine(context, node, prepared, options);
 }
@@ -58,7 +57,6 @@ export class WebEngine extends EventTarget {
     super();
     Object.assign(this, { context, node, told: prepared.told, scene: options.scene ?? '' });
     this.calls = new Map();
-    this.isPart = options.part === true;
     this.names = 0;
     this.lines = [];
     node.port.onmessage = ({ data }) => this.hear(data);
@@ -109,7 +107,6 @@ export class WebEngine extends EventTarget {
 
   /** Another scene in the place of this one, prepared in a worker or here; the old one fades. */
   async take(options) {
-    await this.complete();
     const { module } = await load(options.wasm);
     const prepared = options.prepared ?? prepare(module, { rate: this.context.sampleRate, ...options });
     this.told = prepared.told;
@@ -121,17 +118,8 @@ export class WebEngine extends EventTarget {
     this.lines = [];
   }
 
-  /** Goes on with the whole engine (`wasm`), where a part of it has begun to play: it does all that was done since, and then what comes. */
-  complete(wasm) {
-    if (!this.isPart) return Promise.resolve();
-    this.completing ??= load(wasm).then(({ bytes }) => this.call({ do: 'complete', wasm: bytes })).then(() => { this.isPart = false; });
-    this.completing.catch(() => { this.completing = undefined; });
-    return this.completing;
-  }
-
   /** Changes the scene that sounds into the one of this text: numbers of surfaces and bodies, their maps. */
   async apply(scene, { files, pictures } = {}) {
-    await this.complete();
     const changes = await this.call({ do: 'apply', scene, files, pictures });
     this.scene = scene;
     return changes;
@@ -161,14 +149,12 @@ export class WebEngine extends EventTarget {
     return this.call({ do: 'command', what: 'hapticGain', index: channel, value: gain });
   }
 
-  async stats() {
-    await this.complete();
+  stats() {
     return this.call({ do: 'stats' });
   }
 
   /** All that was reported since the engine or its scene was made, as a contact log. */
   async log() {
-    await this.complete();
     await this.call({ do: 'log' });
     return this.lines.join('');
   }
@@ -196,10 +182,6 @@ export class WebEngine extends EventTarget {
     else if (data.refused !== undefined) this.tell('refused', data);
     else if (data.heard !== undefined) this.tell('heard', data);
     else if (data.taken !== undefined) this.tell('taken', data);
-    else if (data.lacking !== undefined) {
-      this.tell('lacking', data);
-      this.complete().catch((error) => this.tell('error', error));
-    }
   }
 
   /** Every part of a recording begins with the version; the whole says it once. */

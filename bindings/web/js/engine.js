@@ -75,15 +75,6 @@ export class Engine {
     return new Uint8Array(this.wasm.memory.buffer.slice(0));
   }
 
-  /** This engine in an instance of another module with the same memory: the whole of which its own is a part. */
-  moved(module) {
-    const image = new Uint8Array(this.wasm.memory.buffer);
-    const other = Engine.shell(module, image.length);
-    other.fill(image, 0, image.length);
-    other.know(this.told);
-    return other;
-  }
-
   /** Keeps what the engine has told of itself, and by which numbers its things are called. */
   know(told) {
     this.told = told;

@@ -5,8 +5,6 @@ import { Engine, SCOPE_NUMBERS } from './engine.js';
 const COPIED_A_BLOCK = 1 << 20;
 /** How long one engine fades into the next, s. */
 const FADE_S = 0.03;
-/** Blocks that an engine which catches up renders beside one that sounds, and in its place. */
-const CAUGHT_UP = { beside: 3, alone: 8 };
 /** How often the page is told what contacts do, and what was recorded, s. */
 const TOLD_S = 0.016;
 const LOG_TOLD_S = 0.5;
@@ -14,10 +12,7 @@ const LOG_TOLD_S = 0.5;
 class AsperityProcessor extends AudioWorkletProcessor {
   constructor({ processorOptions }) {
     super();
-    const { wasm, part, prepared, log } = processorOptions;
-    // While only a part of the engine is here: what it began with and all that was done to it since, block by block.
-    this.past = part === true ? { image: prepared.image, told: prepared.told, done: [], blocks: 0 } : null;
-    this.whole = null;
+    const { wasm, prepared, log } = processorOptions;
     this.module = wasm instanceof WebAssembly.Module ? wasm : new WebAssembly.Module(wasm);
     this.engine = null;
     this.old = null;
@@ -31,7 +26,6 @@ class AsperityProcessor extends AudioWorkletProcessor {
     this.sinceTold = 0;
     this.sinceLog = 0;
     this.stamps = [];
-    this.rises = false;
     this.alive = true;
     this.port.onmessage = ({ data }) => this.hear(data);
     if (prepared) {
@@ -42,80 +36,25 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   hear(message) {
     if (message.do === 'events') {
-      // An engine that has stopped takes its events later; where there is none yet they wait.
-      if ((this.engine === null && this.past === null) || this.coming !== null) this.waiting.push(message);
+      // Where there is no engine yet they wait.
+      if (this.engine === null || this.coming !== null) this.waiting.push(message);
       else this.report(message);
       return;
     }
     try {
       const answer = this[message.do](message);
-      if (message.id === undefined) return;
-      if (answer instanceof Promise) answer.then(() => this.port.postMessage({ id: message.id }), (error) => this.refuse(error, message.id));
-      else this.port.postMessage({ answer, id: message.id });
+      if (message.id !== undefined) this.port.postMessage({ answer, id: message.id });
     } catch (error) {
-      this.refuse(error, message.id);
+      this.port.postMessage({ error: error.message, id: message.id });
     }
-  }
-
-  refuse(error, id) {
-    this.port.postMessage({ error: error.message, id });
-  }
-
-  /** The whole engine, of which a part plays: compiled beside the sound, it does all that was done since the beginning and goes on from there. */
-  complete({ wasm }) {
-    return WebAssembly.compile(wasm).then((module) => {
-      this.module = module;
-      if (this.past === null) return;
-      this.whole = { engine: Engine.shell(module, this.past.image.length), copied: 0, next: 0, blocks: 0 };
-      return new Promise((resolve) => { this.whole.plays = resolve; });
-    });
-  }
-
-  /** Does something to the engine, and keeps it for the whole engine where a part plays. */
-  act(what) {
-    this.past?.done.push({ at: this.past.blocks, what });
-    return what(this.engine);
-  }
-
-  /** Some blocks of what the whole engine has to catch up with; then it plays. */
-  catchUp(frames) {
-    const { past, whole } = this;
-    if (whole.copied < past.image.length) {
-      whole.engine.fill(past.image, whole.copied, whole.copied + COPIED_A_BLOCK);
-      whole.copied += COPIED_A_BLOCK;
-      if (whole.copied >= past.image.length) whole.engine.know(past.told);
-      return;
-    }
-    const most = this.engine === null ? CAUGHT_UP.alone : CAUGHT_UP.beside;
-    for (let n = 0; ; n++) {
-      for (; past.done[whole.next]?.at === whole.blocks; whole.next++) {
-        // What was refused then is refused again.
-        try { past.done[whole.next].what(whole.engine); } catch { /* The page has been told. */ }
-      }
-      if (whole.blocks === past.blocks) break;
-      if (n === most) return;
-      whole.engine.render(frames);
-      whole.blocks++;
-    }
-    this.rises = this.engine === null;
-    [this.engine, this.past, this.whole] = [whole.engine, null, null];
-    whole.plays();
-  }
-
-  /** What a part of the engine does not have stops it; silence, until the whole one has caught up. */
-  lacks(error) {
-    if (!(error instanceof WebAssembly.RuntimeError) || this.past === null) return false;
-    this.engine = null;
-    this.port.postMessage({ lacking: error.stack });
-    return true;
   }
 
   report({ events, stamp }) {
     for (const event of events) {
       try {
-        this.act((engine) => engine?.report(event.t, event));
+        this.engine.report(event.t, event);
       } catch (error) {
-        if (!this.lacks(error)) this.port.postMessage({ refused: error.message, event });
+        this.port.postMessage({ refused: error.message, event });
       }
     }
     if (stamp !== undefined) this.stamps.push(stamp);
@@ -137,8 +76,6 @@ class AsperityProcessor extends AudioWorkletProcessor {
     if (this.engine !== null) {
       this.tellLog();
       [this.old, this.fading] = [this.engine, 0];
-      this.whole?.plays();
-      [this.past, this.whole] = [null, null];
     }
     this.engine = engine;
     this.watches = this.coming.picture !== null;
@@ -153,16 +90,11 @@ class AsperityProcessor extends AudioWorkletProcessor {
   }
 
   command({ what, value, index }) {
-    try {
-      this.act((engine) => engine?.do(what, value, index));
-    } catch (error) {
-      if (!this.lacks(error)) throw error;
-    }
+    this.engine?.do(what, value, index);
   }
 
   stats() {
-    const told = this.past === null ? this.engine?.stats() : undefined;
-    return { stats: {}, why_silent: [], ...told, memory: this.engine?.wasm.memory.buffer.byteLength };
+    return { stats: {}, why_silent: [], ...this.engine?.stats(), memory: this.engine?.wasm.memory.buffer.byteLength };
   }
 
   /** The rest of the recording, at once. */
@@ -176,8 +108,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   tellLog() {
     this.sinceLog = 0;
-    // The whole engine does all that a part of it did, so the log from the beginning is told by that: writing numbers is left out of the part.
-    if (!this.records || this.engine === null || this.past !== null) return;
+    if (!this.records || this.engine === null) return;
     const lines = this.engine.recorded();
     this.engine.record();
     if (lines.length > 0) this.port.postMessage({ log: lines }, [lines.buffer]);
@@ -197,31 +128,14 @@ class AsperityProcessor extends AudioWorkletProcessor {
     const [audio, haptic] = outputs;
     const frames = audio[0].length;
     if (this.coming !== null) this.copy(COPIED_A_BLOCK);
-    if (this.whole !== null) this.catchUp(frames);
-    if (this.engine !== null) this.render(frames);
-    if (this.past !== null) this.past.blocks++;
     if (this.engine === null) return this.alive;
+    this.play(frames);
+    this.engine.render(frames);
     this.mix(audio, (index) => this.engine.audio(index, frames));
     if (haptic) haptic.forEach((channel, index) => this.lay(channel, this.engine.haptic(index, frames)));
     if (this.old !== null) this.fade(audio, frames);
-    if (this.rises) this.rise([...audio, ...(haptic ?? [])], frames);
     this.watch(frames);
     return this.alive;
-  }
-
-  render(frames) {
-    try {
-      this.play(frames);
-      this.engine?.render(frames);
-    } catch (error) {
-      if (!this.lacks(error)) throw error;
-    }
-  }
-
-  /** After a silence: from nothing, within a block. */
-  rise(channels, frames) {
-    this.rises = false;
-    for (const channel of channels) for (let i = 0; i < frames; i++) channel[i] *= i / frames;
   }
 
   lay(channel, signal) {

@@ -12,10 +12,6 @@ const $ = (id) => document.getElementById(id);
 const TOOLS = String(new URL('./tools.wasm', import.meta.url));
 /** The solver of meshes. */
 const SHAPE = String(new URL('./shape.wasm', import.meta.url));
-/** What of the engine the first surface needs: half of it. The whole comes when that sounds, or when somebody wants more. */
-const FIRST = String(new URL('./first.wasm', import.meta.url));
-/** The whole engine is asked for when the first has told so much, frames: a second of sound. */
-const COMPLETED_AFTER = 60;
 /** Who has not struck anything after so much sound is told how, frames. */
 const HINTED_AFTER = 300;
 /** A take longer than this begins anew when no finger touches, lines of its log. */
@@ -34,7 +30,7 @@ function helper() {
 }
 const worker = helper();
 
-/** Lets the worker make or render something, with the whole engine if that is not said otherwise; what takes seconds has another one. */
+/** Lets the worker make or render something, with the engine if nothing else is said; what takes seconds has another one. */
 async function ask(work, wasm) {
   const { module } = await load(wasm);
   const id = (ask.count = (ask.count ?? 0) + 1);
@@ -62,9 +58,7 @@ function say(sentence, seconds = Math.max(6, sentence.length / 12)) {
 function make(surface, modes) {
   const { text, pictures, files } = sceneOf(surface, surface.id, modes);
   const relief = surface.draw ? 0 : RELIEF_TEXELS;
-  const wasm = surface === SURFACES[0] && modes === undefined && !state.whole ? FIRST : undefined;
-  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } }, wasm)
-    .then((prepared) => ({ ...prepared, wasm }));
+  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } });
 }
 
 /** Another surface: under the fingers without a click. */
@@ -155,7 +149,7 @@ async function begin() {
   state.context = context;
   context.onstatechange = () => { if (context.state === 'interrupted') say('The sound was interrupted; touch to go on.'); };
   const { prepared } = state.prepared ? state : { prepared: await make(state.surface) };
-  const engine = await createEngine(context, { prepared, wasm: prepared.wasm, part: prepared.wasm !== undefined });
+  const engine = await createEngine(context, { prepared });
   state.prepared = null;
   const volume = new GainNode(context);
   const analyser = new AnalyserNode(context, { fftSize: 4096, smoothingTimeConstant: 0.2 });
@@ -166,7 +160,6 @@ async function begin() {
   engine.addEventListener('frame', ({ detail }) => frame(detail));
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
-  engine.addEventListener('lacking', ({ detail }) => { state.lacked = detail.lacking; });
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;
@@ -175,7 +168,6 @@ async function begin() {
   state.engine = engine;
   hand.again();
   replay().catch(refuse);
-  state.whole = true;
 }
 
 /** The stroke that came with the link, once. */
@@ -208,8 +200,6 @@ function frame({ rows, levels, tiles }) {
   const last = rows.length - 16;
   [state.speed, state.force, state.touching] = last >= 0 ? [Math.hypot(rows[last + 7], rows[last + 8]), rows[last + 9], rows[last] > 0] : [0, 0, false];
   state.frames++;
-  // What nobody hears yet may load now.
-  if (state.frames === COMPLETED_AFTER) state.engine.complete().catch(refuse);
   if (state.frames === HINTED_AFTER && !state.struck) {
     $('hint').textContent = 'now tap it';
     $('hint').className = 'tap';

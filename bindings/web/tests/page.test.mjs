@@ -53,22 +53,6 @@ test('a scripted stroke rendered by an OfflineAudioContext has the same digest t
   await context.close();
 });
 
-test('a part of the engine that lacks something is followed by the whole one', async () => {
-  const { context, page, wrong } = await open(chromium, server.url);
-  await ready(page);
-  await drag(page, line(250, 6));
-  await page.waitForFunction(() => window.asperity.state.engine, null, { timeout: 30000 });
-  await page.evaluate(() => {
-    window.asperity.state.engine.hear({ lacking: 'told by a test' });
-  });
-  await page.waitForFunction(() => !window.asperity.state.engine.isPart, null, { timeout: 30000 });
-  await drag(page, line(260, 20));
-  const { stats: after } = await stats(page);
-  assert.ok(after.events > 5 && after.refused === 0);
-  assert.deepEqual(wrong, []);
-  await context.close();
-});
-
 test('what is saved is rendered by the program to the same file, byte for byte', async () => {
   const { context, page, wrong } = await sounding();
   for (const id of ['sawtooth', 'sand', 'bell']) {
@@ -190,7 +174,6 @@ test('everything is reached and done by the keyboard alone', async () => {
   await page.keyboard.up('ArrowRight');
   await page.keyboard.press('Space');
   await page.waitForFunction(async () => (await window.asperity.state.engine.stats()).stats.impacts > 0, null, { timeout: 10000 });
-  assert.equal(await page.evaluate(() => window.asperity.state.lacked), undefined);
   await page.keyboard.press('6');
   await ready(page, 'granite');
   await page.keyboard.press('m');
