@@ -50,7 +50,7 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
     }
     let first = view.colliders.get(pair.collider1)?.position();
     let (mut point_m, mut normal, mut count) = (Vector::ZERO, Vector::ZERO, 0.0);
-    for manifold in pair.manifolds() {
+    for manifold in manifolds(pair) {
         let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
         for contact in manifold.points.iter().filter(|contact| contact.dist <= 0.0) {
             point_m += place * contact.local_p1;
@@ -66,6 +66,17 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
         closing_m_s: 0.0,
         is_nominal: true,
     })
+}
+
+/// Manifolds of a pair: a method from rapier 0.36 on, a field before.
+#[cfg(not(feature = "bevy-rapier-0-36"))]
+fn manifolds(pair: &ContactPair) -> &[ContactManifold] {
+    pair.manifolds()
+}
+
+#[cfg(feature = "bevy-rapier-0-36")]
+fn manifolds(pair: &ContactPair) -> &[ContactManifold] {
+    &pair.manifolds
 }
 
 /// Impulse of a point in the step, N·s.
