@@ -15,6 +15,7 @@ mod modal_bank;
 mod noise_figures;
 mod profiles;
 mod radiation;
+mod rising_ground;
 mod spectrum;
 mod stick_slip;
 mod strike_waveform;

@@ -77,7 +77,7 @@ impl EnergyConserving {
             let gap_m = y.first();
             if !(gap_m <= design.leash_m && gap_m >= -MAX_PENETRATION_M) {
                 let mut lost = y.array();
-                if rescue(design, &mut lost, gap_m, force_n) {
+                if rescue(design, &mut lost, gap_m, force_n, state.rise_m_s.max(0.0)) {
                     state.resets = state.resets.saturating_add(1);
                 }
                 y = quad.load(&lost);

@@ -191,7 +191,7 @@ impl ExactEvent {
             let contact_force_n = if touched { at_least_zero(force + momentum) } else { 0.0 };
             if !(y.first() <= design.leash_m && y.first() >= -MAX_PENETRATION_M) {
                 let mut lost = after;
-                if rescue(design, &mut lost, after[0], f2) {
+                if rescue(design, &mut lost, after[0], f2, state.rise_m_s.max(0.0)) {
                     state.resets = state.resets.saturating_add(1);
                 }
                 y = quad.load(&lost);

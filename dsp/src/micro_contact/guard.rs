@@ -5,7 +5,7 @@
 //! | height or force not finite or beyond the [`limits`](crate::limits) | the last good one is held | yes |
 //! | a bend not finite or beyond the limits of a height, or missing | no bend | no |
 //! | force below zero | zero: a surface does not pull | no |
-//! | gap above the leash | upward velocities become zero | no |
+//! | gap above the leash | velocities become at most that of the rising ground, zero on any other | no |
 //! | gap beyond 0.1 m, penetration beyond 20 mm and twice what the force presses in | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
@@ -22,6 +22,8 @@ pub(super) const MAX_GAP_M: f64 = 0.1;
 pub(super) const MAX_PENETRATION_M: f64 = 0.02;
 /// A force that sets in at once presses a spring in to twice its static depth.
 const PRESSED_OVERSHOOT: f64 = 2.0;
+/// Time constant of the mean over the ground's rise, s (chosen: ten periods of what is felt best).
+const RISE_S: f64 = 0.04;
 /// Magnitudes below this are zero.
 pub(super) const VANISHING: f64 = 1e-100;
 
@@ -137,15 +139,21 @@ pub(super) fn start_or_zero(value: f64, good: bool, resets: &mut u32) -> f64 {
 /// whether it was lost.
 #[cold]
 #[inline(never)]
-pub(super) fn rescue(design: &MicroContact, y: &mut [f64; 4], gap_m: f64, force_n: f64) -> bool {
+pub(super) fn rescue(
+    design: &MicroContact,
+    y: &mut [f64; 4],
+    gap_m: f64,
+    force_n: f64,
+    rise_m_s: f64,
+) -> bool {
     let pressed_m = PRESSED_OVERSHOOT * force_n / design.probe.contact_stiffness_n_m;
     if !(gap_m <= MAX_GAP_M && gap_m >= -MAX_PENETRATION_M - pressed_m) {
         *y = design.resting(force_n);
         return true;
     }
     if gap_m > design.leash_m {
-        y[2] = y[2].min(0.0);
-        y[3] = y[3].min(0.0);
+        y[2] = y[2].min(rise_m_s);
+        y[3] = y[3].min(rise_m_s);
     }
     false
 }
@@ -156,8 +164,13 @@ pub(super) fn flushed(x: f64) -> f64 {
     if x.abs() < VANISHING { 0.0 } else { x }
 }
 
-/// Flushes a contact's state; called once a grid step.
+/// Flushes a contact's state and follows the rise of its ground; called once a grid step.
 #[inline(always)]
-pub(super) fn flush(state: &mut ContactState) {
+pub(super) fn end_of_grid(state: &mut ContactState, step_s: f64) {
     state.y = state.y.map(flushed);
+    let grid_s = GRID as f64 * step_s;
+    let height_m = state.heights_m[2];
+    let rise_m_s = (height_m - state.grid_height_m) / grid_s;
+    state.rise_m_s += (rise_m_s - state.rise_m_s) * (grid_s / RISE_S).min(1.0);
+    state.grid_height_m = height_m;
 }

@@ -212,7 +212,7 @@ impl MicroContact {
         if let Scheme::SemiImplicit(scheme) = &self.scheme {
             state.y[0] += drift / scheme.substeps as f64;
         }
-        (state.y[2], state.y[3]) = (speed, speed);
+        (state.y[2], state.y[3], state.rise_m_s) = (speed, speed, speed);
         let height_m = state.heights_m[2];
         state.heights_m = [height_m - 2.0 * drift, height_m - drift, height_m];
         state
@@ -376,7 +376,7 @@ impl MicroContact {
             }
             state.clock = state.clock.wrapping_add(count as u32);
             if count == left {
-                guard::flush(state);
+                guard::end_of_grid(state, self.step_s);
             }
             (height_m, force_n, ground, out) = (later_heights, later_forces, later_ground, later_rows);
         }

@@ -119,7 +119,7 @@ impl SemiImplicit {
             let carried = y.first();
             if !(carried <= design.leash_m && carried >= -MAX_PENETRATION_M) {
                 let mut lost = y.array();
-                if rescue(design, &mut lost, carried, force_n) {
+                if rescue(design, &mut lost, carried, force_n, state.rise_m_s.max(0.0)) {
                     gap = lost[0];
                     state.resets = state.resets.saturating_add(1);
                 }

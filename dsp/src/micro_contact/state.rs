@@ -41,6 +41,10 @@ pub struct ContactState {
     pub(super) heights_m: [f64; 3],
     /// The last two forces, oldest first.
     pub(super) forces_n: [f64; 2],
+    /// Mean velocity of the ground, m/s, and its height at the last grid step, m: a leash holds the
+    /// finger to ground that rises.
+    pub(super) rise_m_s: f64,
+    pub(super) grid_height_m: f64,
     /// Rows since the start; only its place on the grid of 64 counts.
     pub(super) clock: u32,
     pub(super) resets: u32,
@@ -48,7 +52,16 @@ pub struct ContactState {
 
 impl ContactState {
     pub(super) fn new(y: [f64; 4], height_m: f64, force_n: f64) -> Self {
-        Self { y, gap_m: y[0], heights_m: [height_m; 3], forces_n: [force_n; 2], clock: 0, resets: 0 }
+        Self {
+            y,
+            gap_m: y[0],
+            heights_m: [height_m; 3],
+            forces_n: [force_n; 2],
+            clock: 0,
+            resets: 0,
+            rise_m_s: 0.0,
+            grid_height_m: height_m,
+        }
     }
 
     /// Number of inputs replaced or states put back on the surface since the start.
