@@ -125,6 +125,8 @@ parameters! {
         SIZE_M: "size_m", "m", limits::material::SIZE_M, "Longest side or diameter of a stock body";
         STRIKE_GAIN: "strike_gain", "", limits::impact::GAIN,
             "Linear gain of impacts beside strokes, 1 = as mechanics says; missing: by the level policy where the bus's gain is, else 1";
+        LEAST_TIME_S: "least_time_s", "s", limits::impact::LEAST_TIME_S,
+            "Time within which an impact no stronger than the one before is dropped, and counted", or(0.0);
         MASS_KG: "mass_kg", "kg", limits::material::MASS_KG,
             "Mass, for friction that rings a body without shapes; a stock body's is known";
     }

@@ -2,11 +2,13 @@
 
 use crate::common;
 
+use asperity::open::Overrides;
 use asperity::{
     Actuator, AddError, AudioBus, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine,
     Impact, Material, Refusal, Renderer, Scene, SurfaceId,
 };
 use common::{bar, peak, plate};
+use std::path::Path;
 
 /// An engine with so many buses, without limiters.
 fn engine(buses: usize) -> (Scene, Renderer) {
@@ -269,4 +271,20 @@ fn the_same_blow_told_twice_within_the_least_time_sounds_once() {
     render(&mut renderer, 1, 8192, 256);
     assert_eq!((scene.stats().impacts, scene.stats().too_soon), (3, 1));
     assert!(scene.add_body(Body::new(bar()).least_time_s(-1.0)).is_err());
+}
+
+#[test]
+fn a_scene_file_gives_a_body_its_least_time() {
+    let (mut scene, mut renderer) = engine(1);
+    let table = "name = \"bar\"\nstock = \"bar\"\nsize_m = 0.3\nleast_time_s = 0.03";
+    let read = scene.read_body(table, Path::new(""), &Overrides::default()).unwrap();
+    let body = scene.add_body(read).unwrap();
+    for t in [0.0, 0.005, 0.035] {
+        scene.report(t, strike(body, 1.0)).unwrap();
+    }
+    render(&mut renderer, 1, 8192, 256);
+    assert_eq!((scene.stats().impacts, scene.stats().too_soon), (2, 1));
+    let refused = scene.read_body(&table.replace("0.03", "61.0"), Path::new(""), &Overrides::default());
+    let error = refused.unwrap_err().to_string();
+    assert!(error.contains("least_time_s") && error.contains("0 to 60 s"), "{error}");
 }

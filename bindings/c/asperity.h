@@ -576,6 +576,14 @@ typedef struct asp_stats {
     /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
     /// samples. (Since 0.1.1.)
     uint64_t rubs_crowded_out;
+    /// Reports beyond what the models reach, which counted as the limit. (Since 0.1.3.)
+    uint64_t held;
+    /// Impacts dropped because audio stood still when they were reported. (Since 0.1.3.)
+    uint64_t stale;
+    /// Impacts dropped because they came within `least_time_s` of their body. (Since 0.1.3.)
+    uint64_t too_soon;
+    /// Bodies that were removed and faded before they had rung out. (Since 0.1.3.)
+    uint64_t given_way;
 } asp_stats;
 
 /// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the

@@ -55,7 +55,8 @@ impl<'a> Maker<'a> {
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
         let body = Body::new(model).of(material).on_bus(bus);
         let strike_gain = entry.strike_gain.unwrap_or(strike_gain);
-        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, ..body })
+        let least_time_s = entry.least_time_s.unwrap_or(0.0);
+        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, least_time_s, ..body })
     }
 
     /// Settings that all sources of a surface share.

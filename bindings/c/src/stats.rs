@@ -67,37 +67,54 @@ pub struct asp_stats {
     /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
     /// samples. (Since 0.1.1.)
     pub rubs_crowded_out: u64,
+    /// Reports beyond what the models reach, which counted as the limit. (Since 0.1.3.)
+    pub held: u64,
+    /// Impacts dropped because audio stood still when they were reported. (Since 0.1.3.)
+    pub stale: u64,
+    /// Impacts dropped because they came within `least_time_s` of their body. (Since 0.1.3.)
+    pub too_soon: u64,
+    /// Bodies that were removed and faded before they had rung out. (Since 0.1.3.)
+    pub given_way: u64,
 }
 
-sized!(asp_stats, "asp_stats", [offset_of!(asp_stats, limiter_db)], |struct_size| Self {
-    struct_size,
-    load: 0.0,
-    position: 0,
-    events: 0,
-    impacts: 0,
-    shortened: 0,
-    shortened_collisions: 0,
-    micro_collisions: 0,
-    blows: 0,
-    dropped: 0,
-    superseded: 0,
-    orphaned: 0,
-    stolen: 0,
-    debounced: 0,
-    lapsed: 0,
-    jumps: 0,
-    unpressed: 0,
-    refused: 0,
-    quarantined: 0,
-    late: 0,
-    clock_jumps: 0,
-    clock_paces: 0,
-    ahead: 0,
-    shed: 0,
-    contacts: 0,
-    limiter_db: 0,
-    rubs_crowded_out: 0,
-});
+sized!(
+    asp_stats,
+    "asp_stats",
+    [offset_of!(asp_stats, limiter_db), offset_of!(asp_stats, held)],
+    |struct_size| Self {
+        struct_size,
+        load: 0.0,
+        position: 0,
+        events: 0,
+        impacts: 0,
+        shortened: 0,
+        shortened_collisions: 0,
+        micro_collisions: 0,
+        blows: 0,
+        dropped: 0,
+        superseded: 0,
+        orphaned: 0,
+        stolen: 0,
+        debounced: 0,
+        lapsed: 0,
+        jumps: 0,
+        unpressed: 0,
+        refused: 0,
+        quarantined: 0,
+        late: 0,
+        clock_jumps: 0,
+        clock_paces: 0,
+        ahead: 0,
+        shed: 0,
+        contacts: 0,
+        limiter_db: 0,
+        rubs_crowded_out: 0,
+        held: 0,
+        stale: 0,
+        too_soon: 0,
+        given_way: 0,
+    }
+);
 
 impl asp_stats {
     fn of(stats: &asperity::Stats) -> Self {
@@ -128,6 +145,10 @@ impl asp_stats {
             contacts: stats.contacts,
             limiter_db: stats.limiter_db,
             rubs_crowded_out: stats.rubs_crowded_out,
+            held: stats.held,
+            stale: stats.stale,
+            too_soon: stats.too_soon,
+            given_way: stats.given_way,
             ..sized::Sized32::initial()
         }
     }

@@ -37,6 +37,10 @@ pub struct AsperityBody {
     #[export]
     #[init(val = -1.0)]
     strike_gain: f64,
+    /// Time within which a blow no stronger than the one before is dropped, s, 0 to 60; 0 drops
+    /// none.
+    #[export]
+    least_time_s: f64,
     /// Audio bus of the world, from 0.
     #[export]
     bus: i64,
@@ -137,6 +141,9 @@ impl AsperityBody {
         let mut table = table_of(&self.table.to_string())?;
         if self.strike_gain >= 0.0 {
             table.insert("strike_gain".into(), Value::Float(self.strike_gain));
+        }
+        if self.least_time_s > 0.0 {
+            table.insert("least_time_s".into(), Value::Float(self.least_time_s));
         }
         let mut say = |key: &str, text: &GString| {
             if !text.is_empty() {

@@ -140,6 +140,9 @@ pub struct LogBody {
     /// Linear gain of impacts beside strokes; missing: 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub strike_gain: f64,
+    /// Least time between equally strong impacts, s; missing: 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub least_time_s: f64,
     /// Its mass, if it is known, kg.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
@@ -147,6 +150,11 @@ pub struct LogBody {
 
 fn one() -> f64 {
     1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_zero(time_s: &f64) -> bool {
+    *time_s == 0.0
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
@@ -171,8 +179,8 @@ pub struct LogSurface {
 impl From<&Body> for LogBody {
     fn from(body: &Body) -> Self {
         let modes = serde_json::from_str(&body.model.to_json()).unwrap_or_default();
-        let Body { material, bus, gain, strike_gain, mass_kg, .. } = *body;
-        Self { modes, material, bus, gain, strike_gain, mass_kg }
+        let Body { material, bus, gain, strike_gain, least_time_s, mass_kg, .. } = *body;
+        Self { modes, material, bus, gain, strike_gain, least_time_s, mass_kg }
     }
 }
 
@@ -183,7 +191,7 @@ impl LogBody {
     /// When the modes are none.
     pub(crate) fn body(&self) -> Result<Body, crate::model::modal_model::ModalModelError> {
         let body = Body::new(ModalModel::parse(&self.modes.to_string())?);
-        let Self { material, bus, gain, strike_gain, mass_kg, .. } = *self;
-        Ok(Body { material, bus, gain, strike_gain, mass_kg, ..body })
+        let Self { material, bus, gain, strike_gain, least_time_s, mass_kg, .. } = *self;
+        Ok(Body { material, bus, gain, strike_gain, least_time_s, mass_kg, ..body })
     }
 }

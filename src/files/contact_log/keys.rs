@@ -59,6 +59,7 @@ const BODY: &[Key] = &[
     ("bus", Holds::Any),
     ("gain", Holds::Any),
     ("strike_gain", Holds::Any),
+    ("least_time_s", Holds::Any),
     ("mass_kg", Holds::Any),
 ];
 const SURFACE: &[Key] =

@@ -25,6 +25,8 @@ pub struct BodyEntry {
     pub residual: Option<f64>,
     /// Gain of impacts beside strokes; none = by the level policy.
     pub strike_gain: Option<f64>,
+    /// Least time between equally strong impacts that are heard, s; none = 0.
+    pub least_time_s: Option<f64>,
     /// Its mass, kg; none = a stock body's own, or unknown.
     pub mass_kg: Option<f64>,
     /// Name of the bus it plays on; none = the first.
@@ -44,6 +46,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
         strike_gain: fields.number(&parameters::body::STRIKE_GAIN)?,
+        least_time_s: fields.number(&parameters::body::LEAST_TIME_S)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,
         bus: fields.text("bus")?,
     };

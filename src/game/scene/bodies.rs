@@ -21,9 +21,6 @@ const HEARD_DB_SPL: (f64, f64) = (30.0, 100.0);
 /// Number of bodies that have rung out and are kept.
 const MOST_RESTED: usize = 16;
 
-/// Least time between equal sounds, s.
-const LEAST_TIME_S: limits::Range = limits::Range::new(0.0, 60.0, "0 to 60 s");
-
 impl Scene {
     /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a
     /// body of PLA on the first bus.
@@ -145,7 +142,7 @@ impl Scene {
     ) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
-        within("least_time_s", body.least_time_s, LEAST_TIME_S)?;
+        within("least_time_s", body.least_time_s, limits::impact::LEAST_TIME_S)?;
         let sends = body.sends;
         let strike_gain = within("strike_gain", body.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());

@@ -139,7 +139,7 @@ namespace Asperity
     {
         public uint StructSize; public float Load;
         public ulong Position, Events, Impacts, Shortened, ShortenedCollisions, MicroCollisions, Blows, Dropped, Superseded, Orphaned, Stolen, Debounced,
-            Lapsed, Jumps, Unpressed, Refused, Quarantined, Late, ClockJumps, ClockPaces, Ahead, Shed, Contacts, LimiterDb, RubsCrowdedOut;
+            Lapsed, Jumps, Unpressed, Refused, Quarantined, Late, ClockJumps, ClockPaces, Ahead, Shed, Contacts, LimiterDb, RubsCrowdedOut, Held, Stale, TooSoon, GivenWay;
     }
 
     [StructLayout(LayoutKind.Sequential)]

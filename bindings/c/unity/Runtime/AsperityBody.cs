@@ -1,11 +1,12 @@
 // A body that rings: what collisions with its collider sound like, and what a finger on it feels.
+using System;
 using UnityEngine;
 
 namespace Asperity
 {
     public sealed class AsperityBody : MonoBehaviour
     {
-        [Tooltip("bar, tube, ring, plate, disc, bowl or block; empty where ModesJson is given")]
+        [Tooltip("bar, tube, ring, plate, disc, bowl, block, box, can, bottle, pan, barrel or door; empty where ModesJson is given")]
         public string Stock = "plate";
         [Tooltip("Longest side or diameter, m")]
         public float SizeM = 0.3f;
@@ -18,6 +19,8 @@ namespace Asperity
         public float UvSizeM = 1f;
         [Tooltip("How loud blows are beside strokes; 1: as mechanics says; below 0: as the engine has it")]
         public float StrikeGain = -1f;
+        [Tooltip("An impact that comes sooner after one that was as strong is dropped, s; 0 drops none")]
+        public float LeastTimeS = 0f;
         [Tooltip("Weaker collisions are not reported, N s")]
         public float LeastImpulseNS = 1e-4f;
 
@@ -45,6 +48,7 @@ namespace Asperity
             scene = world.Scene;
             Body = Surface = 0;
             var body = new Body { SizeM = SizeM, Material = Made, StrikeGain = StrikeGain < 0f ? double.NaN : StrikeGain };
+            if (LeastTimeS > 0f) body.Table = FormattableString.Invariant($"least_time_s = {(double)LeastTimeS:0.0#####}");
             if (ModesJson != null) body.ModesJson = ModesJson.text; else body.Stock = Stock;
             Body = scene.Add(body);
             Surface = scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
