@@ -100,6 +100,7 @@ pub use files::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes, shapes_to_fi
 pub use game::contradiction::{Contradiction, Likely};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
+pub use game::tip::{HITCH_S, JUMP_M_S, Tip, TipCoupling, TipStep, TipSurface};
 pub use link::stats::Stats;
 pub use link::tap::{ContactBlock, NoTap, Tap};
 pub use model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};

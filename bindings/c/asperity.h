@@ -253,6 +253,9 @@ typedef struct asp_scene asp_scene;
 /// Where a program puts what it was asked for: valid within that one call of its function.
 typedef struct asp_sink asp_sink;
 
+/// A tracked tip.
+typedef struct asp_tip asp_tip;
+
 /// A mode: amplitude e^(-decay_per_s t) sin(2 pi  frequency_hz t + phase_rad).
 typedef struct asp_mode {
     /// Frequency, Hz.
@@ -683,6 +686,9 @@ int32_t asp_scene_free(struct asp_scene *scene);
 /// thread.
 int32_t asp_renderer_free(struct asp_renderer *renderer);
 
+/// Frees a tip; null is nothing. It ends no contact: report the end of what it touches.
+int32_t asp_tip_free(struct asp_tip *tip);
+
 /// Closes a port; null is nothing.
 int32_t asp_port_free(struct asp_port *port);
 
@@ -880,6 +886,32 @@ int32_t asp_replace_surface(struct asp_scene *scene, uint64_t id, const struct a
 
 /// Takes a surface away; contacts on it fade. Its id is refused from then on.
 int32_t asp_remove_surface(struct asp_scene *scene, uint64_t id);
+
+/// Makes a tracked tip over `count` surfaces that have a frame (`frame` of `asp_surface.table`); a
+/// hand has one for each finger. `stiffness_n_m`: force over depth, 1 to 1e5, NAN = 200; `mass_kg`:
+/// of the proxy that follows along the surface, 1e-3 to 10, NAN = 0.1; `max_force_n`: 1e-3 to 1000,
+/// NAN = 5.
+int32_t asp_tip_new(struct asp_scene *scene,
+                    const uint64_t *surfaces,
+                    uint32_t count,
+                    double stiffness_n_m,
+                    double mass_kg,
+                    double max_force_n,
+                    struct asp_tip **tip);
+
+/// Moves a tip to `position_m` (x, y, z in the axes of the surfaces' body), `dt_s` after its last
+/// step, and fills `event` for `asp_report`: a begin, move or end of `contact`, felt by haptic channel
+/// `actuator`; of kind 0 where nothing is touched.
+int32_t asp_tip_step(struct asp_tip *tip,
+                     double dt_s,
+                     const double *position_m,
+                     uint64_t contact,
+                     int32_t actuator,
+                     struct asp_event *event);
+
+/// Ends what a tip touches, because the game has moved the hand elsewhere: fills `event` with the end
+/// of `contact`, or with kind 0. The next step starts anew.
+int32_t asp_tip_lift(struct asp_tip *tip, uint64_t contact, struct asp_event *event);
 
 /// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter
 /// "Engine".

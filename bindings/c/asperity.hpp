@@ -5,6 +5,7 @@
 
 #include "asperity.h"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -127,6 +128,18 @@ public:
     std::uint64_t lost() const { return asp_port_lost(get()); }
 };
 
+// A tracked tip: the pose of a fingertip becomes an event that the scene takes.
+class Tip : public detail::Handle<asp_tip, asp_tip_free> {
+public:
+    using Handle::Handle;
+    // At `position_m` (x, y, z), `dt_s` after the last step; `event.kind` is 0 where nothing is touched.
+    Status step(double dt_s, const double *position_m, std::uint64_t contact, std::int32_t actuator, asp_event &event) {
+        return Status(asp_tip_step(get(), dt_s, position_m, contact, actuator, &event));
+    }
+    // The game has moved the hand elsewhere: ends what it touches.
+    Status lift(std::uint64_t contact, asp_event &event) { return Status(asp_tip_lift(get(), contact, &event)); }
+};
+
 // The game's half.
 class Scene : public detail::Handle<asp_scene, asp_scene_free> {
 public:
@@ -156,6 +169,15 @@ public:
         asp_port *raw = nullptr;
         Status status(asp_open_port(get(), &config, &raw));
         port = Port(raw);
+        return status;
+    }
+    // A tracked tip over surfaces that have a frame; NAN = the usual coupling.
+    Status track(const std::vector<std::uint64_t> &surfaces, Tip &tip, double stiffness_n_m = NAN, double mass_kg = NAN,
+                 double max_force_n = NAN) {
+        asp_tip *raw = nullptr;
+        auto count = static_cast<std::uint32_t>(surfaces.size());
+        Status status(asp_tip_new(get(), surfaces.data(), count, stiffness_n_m, mass_kg, max_force_n, &raw));
+        tip = Tip(raw);
         return status;
     }
     // A level in use, ASP_LEVEL_…: of a haptic channel, a bus, or the id of a body.

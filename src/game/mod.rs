@@ -6,3 +6,4 @@ pub(crate) mod places;
 pub(crate) mod recording;
 pub(crate) mod scene;
 pub(crate) mod silence;
+pub(crate) mod tip;

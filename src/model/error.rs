@@ -125,6 +125,11 @@ pub enum AddError {
         "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or tell the body's mass_kg"
     )]
     CannotRub,
+    /// A tracked tip needs to know where a surface lies.
+    #[error(
+        "frame: is missing; a tracked tip must know where the surface lies: give it Surface::frame, or [surface.frame] in a scene file"
+    )]
+    NoFrame,
     /// Thing that it refers to and that is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),

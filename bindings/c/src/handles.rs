@@ -1,4 +1,4 @@
-//! Handles: what a program holds of a scene, a renderer, a port and a player.
+//! Handles: what a program holds of a scene, a renderer, a port, a player and a tip.
 
 use crate::entry::enter;
 use crate::handle::Table;
@@ -6,7 +6,7 @@ use crate::playing::Player;
 use asperity::files::contact_log::Names;
 use asperity::live::ports::{ForcePort, LevelsPort, PcmPort, PointsPort};
 use asperity::texture::sand::SandThread;
-use asperity::{Renderer, Scene};
+use asperity::{Renderer, Scene, SurfaceId, Tip};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The game's half of an engine: takes bodies, surfaces and events. One thread at a time.
@@ -26,6 +26,11 @@ pub struct asp_port {
 
 /// An engine that plays on a sound card.
 pub struct asp_player {
+    _private: [u8; 0],
+}
+
+/// A tracked tip.
+pub struct asp_tip {
     _private: [u8; 0],
 }
 
@@ -67,10 +72,17 @@ pub(crate) enum AnyPort {
     Forces(ForcePort),
 }
 
+/// What a tip's handle names: the tip, and the surfaces that it may touch.
+pub(crate) struct TrackedTip {
+    pub(crate) tip: Tip,
+    pub(crate) surfaces: Vec<SurfaceId>,
+}
+
 pub(crate) static SCENES: Table<SceneHalf> = Table::new(1, "scene");
 pub(crate) static RENDERERS: Table<AudioHalf> = Table::new(2, "renderer");
 pub(crate) static PORTS: Table<AnyPort> = Table::new(3, "port");
 pub(crate) static PLAYERS: Table<Player> = Table::new(4, "player");
+pub(crate) static TIPS: Table<TrackedTip> = Table::new(5, "tip");
 
 /// Frees what a handle names; what it leaves in a fault is not freed.
 fn free<T: Send>(table: &Table<T>, handle: usize) -> i32 {
@@ -96,6 +108,12 @@ pub extern "C" fn asp_scene_free(scene: *mut asp_scene) -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_renderer_free(renderer: *mut asp_renderer) -> i32 {
     free(&RENDERERS, renderer as usize)
+}
+
+/// Frees a tip; null is nothing. It ends no contact: report the end of what it touches.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_tip_free(tip: *mut asp_tip) -> i32 {
+    free(&TIPS, tip as usize)
 }
 
 /// Closes a port; null is nothing.

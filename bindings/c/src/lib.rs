@@ -1,4 +1,4 @@
-//! The C interface: every function of `asperity.h`, a handful of flat structs, four kinds of
+//! The C interface: every function of `asperity.h`, a handful of flat structs, five kinds of
 //! handles.
 //!
 //! | rule | how it is kept |
@@ -43,5 +43,6 @@ pub mod stats;
 pub mod status;
 pub mod surface;
 mod text;
+pub mod tip;
 pub mod unity;
 pub mod version;

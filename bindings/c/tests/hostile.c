@@ -114,6 +114,15 @@ static void nulls(void) {
     REFUSED(asp_record_stop(NULL, NULL), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_open_port(scene, NULL, NULL), ASP_BAD_ARGUMENT, "config");
     REFUSED(asp_open_port(scene, &port, NULL), ASP_BAD_ARGUMENT, "port");
+    asp_tip *tip;
+    double at_m[3] = {0, 0, 0};
+    REFUSED(asp_tip_new(NULL, NULL, 0, NAN, NAN, NAN, &tip), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_tip_new(scene, NULL, 0, NAN, NAN, NAN, NULL), ASP_BAD_ARGUMENT, "tip");
+    REFUSED(asp_tip_new(scene, NULL, 1, NAN, NAN, NAN, &tip), ASP_BAD_ARGUMENT, "surfaces");
+    REFUSED(asp_tip_new(scene, NULL, 0, 0.0, NAN, NAN, &tip), ASP_REFUSED, "stiffness_n_m");
+    REFUSED(asp_tip_step(NULL, 0.01, at_m, 1, 0, &event), ASP_BAD_HANDLE, "tip");
+    REFUSED(asp_tip_step(NULL, 0.01, NULL, 1, 0, &event), ASP_BAD_ARGUMENT, "position_m");
+    REFUSED(asp_tip_lift(NULL, 1, &event), ASP_BAD_HANDLE, "tip");
     REFUSED(asp_signals(NULL, NULL, NULL, NULL, NULL), ASP_BAD_HANDLE, "renderer");
     REFUSED(asp_set_sample_rate(scene, NULL, 48000), ASP_BAD_HANDLE, "renderer");
     REFUSED(asp_set_sample_rate(NULL, renderer, 48000), ASP_BAD_HANDLE, "scene");
@@ -617,9 +626,45 @@ static void many(void) {
     MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
 }
 
+/* A hand that comes down on a plane, presses, and is taken away. */
+static void tips(void) {
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    uint64_t flat = plane(scene, bell(scene));
+    asp_tip *tip;
+    REFUSED(asp_tip_new(scene, &flat, 1, NAN, NAN, NAN, &tip), ASP_REFUSED, "frame");
+    asp_surface surface;
+    asp_surface_init(&surface);
+    surface.width_m = surface.height_m = 0.1;
+    surface.table = "frame = { origin_m = [0.0, 0.0, 0.0], u_axis = [1.0, 0.0, 0.0], v_axis = [0.0, 1.0, 0.0] }";
+    uint64_t id = 0;
+    MUST(asp_add_surface(scene, &surface, &id) == ASP_OK);
+    MUST(asp_tip_new(scene, &id, 1, 400.0, NAN, NAN, &tip) == ASP_OK && tip);
+    asp_event event;
+    asp_event_init(&event);
+    uint32_t kinds[4] = {0};
+    for (int n = 0; n < 90; n++) {
+        double height_m = 0.01 - 0.0005 * n;
+        double at_m[3] = {0.02 + 0.0003 * n, 0.05, height_m > -0.002 ? height_m : -0.002};
+        MUST(asp_tip_step(tip, 1.0 / 90.0, at_m, 7, -1, &event) == ASP_OK && event.kind <= ASP_END);
+        kinds[event.kind]++;
+        if (event.kind != 0) MUST(asp_report(scene, n / 90.0, &event, 1, sizeof event, NULL) == ASP_OK);
+    }
+    MUST(kinds[ASP_BEGIN] == 1 && kinds[ASP_MOVE] > 60 && kinds[ASP_END] == 0);
+    MUST(fabs(event.normal_force_n - 0.8) < 1e-9 && fabs(event.velocity_m_s[0] - 0.027) < 1e-4);
+    double nowhere[3] = {NAN, 0, 0};
+    REFUSED(asp_tip_step(tip, 0.01, nowhere, 7, -1, &event), ASP_REFUSED, "position_m");
+    MUST(asp_tip_lift(tip, 7, &event) == ASP_OK && event.kind == ASP_END && event.contact == 7);
+    MUST(asp_tip_lift(tip, 7, &event) == ASP_OK && event.kind == 0);
+    MUST(asp_tip_free(tip) == ASP_OK);
+    REFUSED(asp_tip_lift(tip, 7, &event), ASP_BAD_HANDLE, "tip");
+    MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+}
+
 int main(int count, char **words) {
     few = count > 1 && strcmp(words[1], "few") == 0;
-    nulls(), sizes(), ids_and_numbers(), handles(), threads(), callbacks(), texts(), many();
+    nulls(), sizes(), ids_and_numbers(), handles(), threads(), callbacks(), texts(), many(), tips();
     printf("hostile: %d refusals, each with a status and a sentence; %d calls met a busy handle\n", refusals_, atomic_load(&busy));
     return 0;
 }

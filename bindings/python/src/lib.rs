@@ -20,6 +20,7 @@ mod reduction;
 mod rendering;
 mod shaping;
 mod sources;
+mod tracked;
 mod watch;
 
 use pyo3::prelude::*;
@@ -45,6 +46,8 @@ mod _native {
     use super::shaping::modes;
     #[pymodule_export]
     use super::sources::{as_toml, names_of, parse_log};
+    #[pymodule_export]
+    use super::tracked::TrackedTip;
 
     use pyo3::prelude::*;
 

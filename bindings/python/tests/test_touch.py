@@ -313,3 +313,37 @@ def test_a_stroke_keeps_its_force_where_that_is_asked_for_by_its_own_word():
     assert asp.stroke(surface, duration=0.1).force is None
     with pytest.raises(ValueError, match="force: True is refused.*force_output"):
         asp.stroke(surface, force=True)
+
+
+FRAME = {"origin_m": [0, 0, 0], "u_axis": [1, 0, 0], "v_axis": [0, 1, 0]}
+
+
+def test_a_tracked_hand_presses_and_strokes_what_it_touches():
+    surface = asp.Solid("granite", 0.2, frame=FRAME, name="table").on(asp.Body.stock("plate", 0.2, "steel"))
+    scene = asp.Scene(asp.SceneFile(surface, actuators=[{"full_scale": 1e-4}]), sr=48_000, clock="exact")
+    tip = asp.Tip(surface)
+    events = []
+    for n in range(120):
+        t = n / 90
+        step = tip.step(1 / 90, (0.05 + 0.08 * t, 0.1, max(0.01 - 0.05 * t, -0.004)))
+        events.append(step.event)
+        if (keys := step.keys(contact=3)) is not None:
+            scene.report(t, keys)
+    assert events.count("begin") == 1 and events[-1] == "move"
+    assert step.surface == "table" and step.normal_force_n == pytest.approx(0.8)
+    assert step.velocity_m_s == pytest.approx((0.08, 0.0), abs=1e-3)
+    audio, haptic = scene.renderer.render(64_000)
+    assert rms(audio[0]) > 0 and rms(haptic[0]) > 0
+    assert tip.lift().event == "end" and tip.step(0.01, (0.1, 0.1, 0.1)).event is None
+
+
+def test_a_tip_says_what_it_needs():
+    with pytest.raises(ValueError, match="surface.*frame: is missing"):
+        asp.Tip(asp.Solid("granite"))
+    with pytest.raises(ValueError, match="stiffness_n_m: 0 is refused; must be 1 to 1e5 N/m"):
+        asp.Tip(asp.Solid("granite", frame=FRAME), stiffness_n_m=0)
+    tip = asp.Tip(asp.Solid("granite", frame=FRAME))
+    with pytest.raises(ValueError, match="dt: 0 is refused"):
+        tip.step(0, (0, 0, 0))
+    with pytest.raises(ValueError, match="position_m"):
+        tip.step(0.01, (0, float("nan"), 0))

@@ -1,6 +1,7 @@
 //! Places: where a place of a body is on its surface, and how what gives way answers a depth.
 
 use super::{Scene, Touched};
+use crate::game::tip::TipSurface;
 use crate::model::contact_sample::Place;
 use crate::model::error::{AddError, Refusal};
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
@@ -23,6 +24,19 @@ impl Scene {
         let known = self.known_surface(id)?;
         let Place { frame, size_m, .. } = known.place;
         Ok(frame.map(|frame| frame.uv(point_m, size_m)))
+    }
+
+    /// Rectangles of surfaces that have a [frame](crate::Surface::frame), for a tracked
+    /// [`Tip`](crate::Tip) in the axes of their body.
+    ///
+    /// # Errors
+    /// When a surface is not in this scene, or has no frame.
+    pub fn tip_surfaces(&self, ids: &[SurfaceId]) -> Result<Vec<TipSurface>, AddError> {
+        let rectangle = |id: &SurfaceId| {
+            let Place { frame, size_m, .. } = self.known_surface(*id)?.place;
+            Ok(TipSurface { frame: frame.ok_or(AddError::NoFrame)?, size_m })
+        };
+        ids.iter().map(rectangle).collect()
     }
 
     /// Law of a surface that gives way for the depth of a tip, for the thread that drives a device;

@@ -235,6 +235,13 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern uint asp_port_forces(IntPtr port, [In, Out] Force[] forces, uint count);
         [DllImport(Library, CallingConvention = C)] public static extern ulong asp_port_lost(IntPtr port);
 
+        [DllImport(Library, CallingConvention = C)]
+        public static extern int asp_tip_new(IntPtr scene, ulong[] surfaces, uint count, double stiffnessNM, double massKg, double maxForceN, out IntPtr tip);
+        [DllImport(Library, CallingConvention = C)]
+        public static extern int asp_tip_step(IntPtr tip, double dtS, [In] double[] positionM, ulong contact, int actuator, ref Event e);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_tip_lift(IntPtr tip, ulong contact, ref Event e);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_tip_free(IntPtr tip);
+
         public static readonly Type[] Structs =
         {
             typeof(NativeConfig), typeof(NativeFiles), typeof(NativeImage), typeof(Mode), typeof(NativeBody), typeof(NativeSurface), typeof(Event),
@@ -542,6 +549,14 @@ namespace Asperity
             return Encoding.UTF8.GetString(room, 0, Array.IndexOf<byte>(room, 0));
         }
 
+        /// <summary>A tracked tip over surfaces that have a frame (in their Table); NaN = 200 N/m, 0.1 kg, 5 N.</summary>
+        public Tip Track(ulong[] surfaces, double stiffnessNM = double.NaN, double massKg = double.NaN, double maxForceN = double.NaN)
+        {
+            IntPtr tip;
+            Native.Must(Native.asp_tip_new(handle, surfaces, (uint)surfaces.Length, stiffnessNM, massKg, maxForceN, out tip));
+            return new Tip(tip);
+        }
+
         public Port Open(PortKind kind, Feed feed = Feed.Haptic, uint index = 0, double rateHz = 100, double holdsS = 0.1)
         {
             NativePortConfig config;
@@ -603,6 +618,36 @@ namespace Asperity
         }
 
         ~Renderer() { Native.asp_renderer_free(handle); }
+    }
+
+    /// <summary>A tracked tip: the pose of a fingertip becomes an event for Scene.Report.</summary>
+    public sealed class Tip : IDisposable
+    {
+        IntPtr handle;
+        readonly double[] position = new double[3];
+        internal Tip(IntPtr handle) { this.handle = handle; }
+        /// <summary>At x, y, z (m, in the axes of the surfaces' body), dtS after the last step. False where nothing is touched.</summary>
+        public bool Step(double dtS, double x, double y, double z, ulong contact, int actuator, out Event e)
+        {
+            position[0] = x; position[1] = y; position[2] = z;
+            e = Event.New();
+            Native.Must(Native.asp_tip_step(handle, dtS, position, contact, actuator, ref e));
+            return e.Kind != 0;
+        }
+        /// <summary>The game has moved the hand elsewhere. False where nothing was touched.</summary>
+        public bool Lift(ulong contact, out Event e)
+        {
+            e = Event.New();
+            Native.Must(Native.asp_tip_lift(handle, contact, ref e));
+            return e.Kind != 0;
+        }
+        public void Dispose()
+        {
+            Native.asp_tip_free(handle);
+            handle = IntPtr.Zero;
+            GC.SuppressFinalize(this);
+        }
+        ~Tip() { Native.asp_tip_free(handle); }
     }
 
     /// <summary>What leaves the engine, for any one thread.</summary>

@@ -20,6 +20,7 @@ from asperity._render import TouchWarning, render, stroke
 from asperity._scene import Body, Brownian, Lattice, Sand, SceneFile, Solid, Surface
 from asperity._shape import Shape, modes
 from asperity._take import Take
+from asperity._tip import Tip, TipStep
 
 __all__ = [
     "Body",
@@ -34,6 +35,8 @@ __all__ = [
     "Solid",
     "Surface",
     "Take",
+    "Tip",
+    "TipStep",
     "TouchWarning",
     "__version__",
     "batch",

@@ -1,6 +1,6 @@
 """The native half: whole tasks in, arrays out. Private; the package's own functions say what everything means."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, final
 
@@ -12,6 +12,7 @@ __all__ = [
     "LiveScene",
     "NativeClip",
     "NativeDataSet",
+    "TrackedTip",
     "VERSION",
     "analyze",
     "as_toml",
@@ -39,6 +40,7 @@ _Path = str | PathLike[str]
 _Progress = Callable[[float], object] | None
 _F32 = npt.NDArray[np.float32]
 _F64 = npt.NDArray[np.float64]
+_TipTold = tuple[str | None, str | None, list[float] | None, list[float] | None, float, float]
 
 def analyze(picture: _F64) -> str: ...
 def as_toml(json: str) -> str: ...
@@ -114,6 +116,19 @@ class LiveRenderer:
     def render_into(self, out: _F32) -> None: ...
     def report_load(self, load: float) -> None: ...
     def set_channels(self, text: str) -> int: ...
+
+@final
+class TrackedTip:
+    def __new__(
+        cls,
+        scene: _Path,
+        files: dict[str, Any],
+        stiffness_n_m: float | None = None,
+        mass_kg: float | None = None,
+        max_force_n: float | None = None,
+    ) -> TrackedTip: ...
+    def lift(self) -> _TipTold: ...
+    def step(self, dt: float, position_m: Sequence[float]) -> _TipTold: ...
 
 @final
 class NativeDataSet:
