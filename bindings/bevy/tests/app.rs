@@ -78,7 +78,7 @@ fn the_null_output_renders_exactly_the_apps_own_time() {
 }
 
 #[test]
-fn a_plate_that_is_despawned_while_it_sounds_falls_silent_and_the_app_goes_on() {
+fn a_plate_that_is_despawned_while_it_sounds_rings_out_and_the_app_goes_on() {
     let mut app = app();
     let both = finger_and_plate(&mut app);
     stroke(&mut app, both, 0..30);
@@ -86,9 +86,14 @@ fn a_plate_that_is_despawned_while_it_sounds_falls_silent_and_the_app_goes_on() 
     app.world_mut().despawn(both[1]);
     assert_eq!((touch(&mut app).body(both[1]), touch(&mut app).surface(both[1])), (None, None));
     stroke(&mut app, both, 30..50);
-    let from = played(&app);
-    stroke(&mut app, both, 50..60);
-    assert_eq!(heard(&app, from), 0.0);
+    let mut levels = Vec::new();
+    while levels.last() != Some(&0.0) {
+        assert!(levels.len() < 40, "{levels:?}");
+        let from = played(&app);
+        (0..30).for_each(|_| app.update());
+        levels.push(heard(&app, from));
+    }
+    assert!(levels.is_sorted_by(|before, after| after <= before), "{levels:?}");
     // The finger is told that it touches nothing, and can begin elsewhere.
     assert!(errors(&mut app).iter().all(|error| error.contains("touches nothing")));
     let other = plate(&mut app);
