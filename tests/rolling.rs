@@ -9,7 +9,10 @@ use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::{self, Options, Render};
-use asperity::{ActuatorSettings, Body, Config, Engine, Material, Quantity, Stock, Surface, probe_by_name};
+use asperity::{
+    ActuatorSettings, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Material, Quantity,
+    Stock, Surface, Touching, probe_by_name,
+};
 use common::strokes::{brownian, map, power, relief, rms_and_centroid};
 use common::{SIDE_M, plate, rms, stroke};
 
@@ -134,4 +137,48 @@ fn a_contact_that_slides_on_says_so_with_its_whole_speed_and_any_block_gives_the
     let rolling = part(&long, 0.15, 0.3);
     let locked = part(&long, 0.45, 0.6);
     assert!(rolling < 0.7 * locked, "{rolling} {locked}");
+}
+
+/// Level of a second of a wheel of 200 N that stays (or moves at `speed_m_s`) and slips, dB, and
+/// what the scene says of silence.
+fn wheel_db(speed_m_s: f64, slip_m_s: f64) -> (f64, Vec<String>) {
+    let config = Config { probe: probe_by_name("rigid").unwrap(), ..Config::default() };
+    let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
+    let body = scene.add_body(Body::stock(Stock::Plate, Material::WOOD, 0.5).unwrap()).unwrap();
+    let road = scene.add_surface(plate(0.5).on(body)).unwrap();
+    let (contact, tick) = (ContactId(1), 441);
+    let mut out = Vec::new();
+    for n in 0..60 {
+        let t = f64::from(n) / 100.0;
+        let uv = [0.2 + speed_m_s * t / SIDE_M, 0.5];
+        let sample = ContactSample::new(uv, 200.0).sliding([speed_m_s, 0.0]);
+        let sample = sample.rolling(0.3).slipping(slip_m_s);
+        let event = if n == 0 {
+            ContactEvent::begin_with(contact, Touching::on(road), sample)
+        } else {
+            ContactEvent::moved(contact, sample)
+        };
+        scene.report(t, event).unwrap();
+        let mut audio = vec![0.0; tick];
+        renderer.render(&mut [], &mut [&mut audio]);
+        out.extend(audio);
+    }
+    let why = scene.why_silent().iter().map(ToString::to_string).collect();
+    (20.0 * rms(&out[13_230..]).max(1e-12).log10(), why)
+}
+
+#[test]
+fn a_wheel_that_spins_on_the_spot_is_heard_the_more_it_slips() {
+    let levels = [1.0, 4.0, 13.0].map(|slip_m_s| wheel_db(0.0, slip_m_s));
+    println!("{levels:?}");
+    assert!(levels.iter().all(|(_, why)| why.is_empty()));
+    assert!(levels[0].0 > -60.0 && levels[1].0 > levels[0].0 + 3.0 && levels[2].0 > levels[1].0 + 3.0);
+    // A wheel that rolls, one that is braked, one that spins on its way.
+    let [rolls, braked, spins] = [0.0, 1.0, 13.0].map(|slip_m_s| wheel_db(1.0, slip_m_s).0);
+    println!("{rolls} {braked} {spins}");
+    assert!(braked > rolls && spins > braked + 10.0);
+    // A wheel that spins is as loud as one that slides as fast, on the same kind of ground.
+    let locked = wheel_db(4.0, 4.0).0;
+    assert!((levels[1].0 - locked).abs() < 3.0, "{} and {locked}", levels[1].0);
+    assert!(wheel_db(0.0, 0.0).0 < -100.0);
 }

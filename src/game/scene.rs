@@ -7,8 +7,10 @@ mod ports;
 mod quiet;
 mod recorded;
 mod reports;
+mod spin;
 mod touched;
 
+use self::spin::Spin;
 use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
@@ -100,6 +102,7 @@ pub struct Scene {
 struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
+    spin: Spin,
 }
 
 /// Surface as the game half knows it.

@@ -85,8 +85,9 @@ impl Scene {
             Counters::add(&self.counters.too_soon, 1);
             return Ok(());
         }
-        self.send_stamped(stamp, event)?;
-        self.reported.accept(&event, stamp, self.rings(&event));
+        let sent = self.spun(stamp.sample() as f64 / self.config.inner_rate_hz(), event);
+        self.send_stamped(stamp, sent)?;
+        self.reported.accept(&sent, stamp, self.rings(&sent));
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
         self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {

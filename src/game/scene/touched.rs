@@ -1,5 +1,6 @@
 //! Places: where a place of a body is on its surface, and how what gives way answers a depth.
 
+use super::spin::Spin;
 use super::{Scene, Touched};
 use crate::game::tip::TipSurface;
 use crate::model::contact_sample::Place;
@@ -66,7 +67,7 @@ impl Scene {
     pub(super) fn note_touch(&mut self, event: &ContactEvent) {
         match event {
             ContactEvent::Begin { contact, touching, sample } => {
-                let touched = Touched { surface: touching.surface, at_m: sample.at_m };
+                let touched = Touched { surface: touching.surface, at_m: sample.at_m, spin: Spin::default() };
                 self.touched.insert(*contact, touched);
             }
             ContactEvent::Moved { contact, sample, .. } => {
@@ -76,6 +77,19 @@ impl Scene {
             }
             ContactEvent::End { .. } | ContactEvent::Impact(_) => {}
         }
+    }
+
+    /// An event at `now_s` of the audio, over ground that runs on where it slips faster than it
+    /// moves.
+    pub(super) fn spun(&mut self, now_s: f64, mut event: ContactEvent) -> ContactEvent {
+        if let ContactEvent::Begin { contact, sample, .. } | ContactEvent::Moved { contact, sample, .. } =
+            &mut event
+            && let Some(touched) = self.touched.get_mut(contact)
+            && let Some(known) = self.surfaces.get(touched.surface.0)
+        {
+            *sample = touched.spin.under(now_s, known.place.size_m, *sample);
+        }
+        event
     }
 
     /// Place of a contact on a body that has shapes: its own place counts before its surface's
@@ -90,7 +104,8 @@ impl Scene {
         let known = self.surfaces.get(touched.surface.0)?;
         let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
         let Place { frame, size_m, .. } = &known.place;
-        let in_frame = || Some(frame.as_ref()?.point_m(sample.uv, *size_m));
+        let uv = touched.spin.uv().unwrap_or(sample.uv);
+        let in_frame = || Some(frame.as_ref()?.point_m(uv, *size_m));
         // A bow stands on what its frame says, which at the edge of a sheet is no part of the
         // sheet.
         let inward = frame.as_ref().filter(|_| known.rubs).map(SurfaceFrame::inward);
