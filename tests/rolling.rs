@@ -120,7 +120,8 @@ fn what_rolls_is_darker_than_what_slides_and_its_envelope_another() {
 #[test]
 fn a_contact_that_slides_on_says_so_with_its_whole_speed_and_any_block_gives_the_same_bits() {
     let plain = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| None);
-    let told = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| Some((10.0, 0.01)));
+    // A hair more than the path, which is a number's rounding; what slips faster spins.
+    let told = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| Some((0.2019, 0.01)));
     assert_eq!(plain.audio, told.audio);
     assert_eq!(plain.haptic, told.haptic);
     // It rolls off, locks, and rolls again.
