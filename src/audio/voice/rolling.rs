@@ -1,10 +1,9 @@
 //! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard
 //! (`dsp::rolling`).
 //!
-//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion
-//! is slip, and what ground lies there, is worked out at the steps of the absolute sample grid;
-//! between two of them the share goes along a straight line. A contact whose reports tell no slip
-//! slides, and its heights stay what they are to the bit.
+//! Heights in, heights out, and before the body impulses in, impulses out. The share of rolling goes
+//! along a straight line between two steps of the absolute grid. A contact whose reports tell no
+//! slip slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
 use crate::prepared::area::FINGERTIP_RADIUS_M;
@@ -51,7 +50,7 @@ pub(super) struct RolledOver<'a> {
 }
 
 impl Rolling {
-    /// A report says how it moves.
+    /// Takes from a report how it moves.
     pub(super) fn tell(&mut self, sample: &ContactSample) {
         self.told = sample.slip_m_s.map(|slip_m_s| (slip_m_s, sample.roll_radius_m));
     }
@@ -61,7 +60,7 @@ impl Rolling {
         self.told.is_some() || self.share != [0.0; 2]
     }
 
-    /// It begins as the newest report says, where the profile begins.
+    /// Begins as the newest report says, where the profile begins.
     pub(super) fn begin(&mut self, over: RolledOver<'_>, surface: &SurfaceBlock) {
         (self.ride, self.roughness) = (RollingState::at(surface.height_m[0]), surface.roughness[0]);
         self.sent = Default::default();
@@ -70,7 +69,7 @@ impl Rolling {
         self.share = [share; 2];
     }
 
-    /// Sets out for the share of the newest report: at the steps of the absolute sample grid.
+    /// Sets out for the share of the newest report: at the steps of the absolute grid.
     pub(super) fn turn(&mut self, over: RolledOver<'_>) {
         let from = self.share[1];
         let wanted = self.wanted(over.at).unwrap_or(from);
@@ -105,12 +104,11 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground become those of the ride, and friction, where it is `rubbed` and
-    /// known, acts on what slips; `slow_step` samples lie between two steps of the grid.
+    /// Heights of the ground become those of the ride, and friction, where it is known, acts on
+    /// what slips; `slow_step` samples lie between two steps of the grid.
     pub(super) fn run(
         &mut self,
-        position: u64,
-        slow_step: u64,
+        (position, slow_step): (u64, u64),
         surface: &mut SurfaceBlock,
         n: usize,
         rubbed: bool,
@@ -157,7 +155,7 @@ impl Rolling {
     /// meanwhile.
     pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
-            self.run(0, MAX_BLOCK as u64, surface, n, true);
+            self.run((0, MAX_BLOCK as u64), surface, n, true);
         }
     }
 }

@@ -1,8 +1,8 @@
-//! AC coupling: high-pass the pad motion (felt) and the contact force (heard).
+//! AC coupling: high-passes of the pad's motion (felt) and of the contact force (heard).
 
 use super::PadSample;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
-use asperity_dsp::butterworth::{self, Butterworth, Two};
+use asperity_dsp::butterworth::{Butterworth, State, Two};
 use asperity_dsp::pair::Pair;
 
 /// Rounding error of a pad that does not move, m or m/s².
@@ -12,82 +12,51 @@ const ROUNDING_N: f64 = 1e-11;
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
 /// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
-const STILL_M_S2: f64 = 1e-6;
+pub(super) const STILL_M_S2: f64 = 1e-6;
 
 /// The two high-passes of a contact.
 pub(super) struct AcCoupling {
     pub(super) feel: ContactOutputState,
-    pub(super) force: butterworth::State,
-    /// Last haptic value.
+    pub(super) force: State,
     last_felt: f64,
 }
 
-/// Coupling of the force.
-#[derive(Clone, Copy)]
-pub(super) struct ForceCoupling<'a> {
-    pub(super) high_pass: &'a Butterworth,
-    /// The time of a sample, s; 0 for a force that is not to sound.
-    pub(super) step_s: f64,
-}
-
 impl AcCoupling {
-    /// State of an unused voice.
     pub(super) fn idle(output: &ContactOutput) -> Self {
         let feel = ContactOutputState::begin(output, 0.0, 0.0);
-        Self { feel, force: butterworth::State::default(), last_felt: 0.0 }
+        Self { feel, force: State::default(), last_felt: 0.0 }
     }
 
-    /// The two high-passes side by side, because each waits for itself most of the time: the pad's
-    /// displacement or acceleration about the mean surface, which the actuator is to reproduce, and
-    /// the alternating contact force, which sounds, as impulses of N·s.
+    /// Displacement or acceleration of the pad about the mean surface, which the actuator is to
+    /// reproduce, and the alternating contact force as impulses, N·s; `step_s` is the time of a
+    /// sample, 0 for a force that is not to sound.
     pub(super) fn run(
         &mut self,
         output: &ContactOutput,
-        by: ForceCoupling<'_>,
+        (force_high_pass, step_s): (&Butterworth, f64),
         rows: &[PadSample],
         felt: &mut [f64],
         impulse_n_s: &mut [f64],
     ) {
-        match output.high_pass() {
-            Some(filter) => self.run_both(output, filter, by, rows, felt, impulse_n_s),
-            None => {
-                for (i, row) in rows.iter().enumerate() {
-                    felt[i] = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
-                    impulse_n_s[i] = self.force.tick(by.high_pass, row.contact_force_n).high;
-                }
-                self.round(by.step_s, felt, impulse_n_s);
+        let (rounding, factors) = (Pair::from([ROUNDING, ROUNDING_N]), Pair::from([1.0, step_s]));
+        let finish = |passed: Pair| passed.or_zero_below(rounding) * factors;
+        let Some(filter) = output.high_pass() else {
+            for (row, (felt, impulse_n_s)) in rows.iter().zip(felt.iter_mut().zip(impulse_n_s)) {
+                let moved = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+                let passed_n = self.force.tick(force_high_pass, row.contact_force_n).high;
+                [*felt, *impulse_n_s] = finish([moved, passed_n].into()).into();
             }
-        }
-    }
-
-    /// Without what is only rounding, and the force as impulses.
-    fn round(&mut self, step_s: f64, felt: &mut [f64], impulse_n_s: &mut [f64]) {
-        for (impulse_n_s, felt) in impulse_n_s.iter_mut().zip(felt.iter_mut()) {
-            *impulse_n_s = if impulse_n_s.abs() < ROUNDING_N { 0.0 } else { *impulse_n_s * step_s };
-            *felt = if felt.abs() < ROUNDING { 0.0 } else { *felt };
-        }
-        self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
-    }
-
-    /// Two samples at a time, so that the next stage finds whole vectors in memory and waits for
-    /// none.
-    fn run_both(
-        &mut self,
-        output: &ContactOutput,
-        filter: &Butterworth,
-        by: ForceCoupling<'_>,
-        rows: &[PadSample],
-        felt: &mut [f64],
-        impulse_n_s: &mut [f64],
-    ) {
+            self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
+            return;
+        };
+        // Side by side, because each waits for itself most of the time.
         let mut feel = self.feel;
-        let mut two = Two::new([filter, by.high_pass], [feel.highpass, self.force]);
-        let (rounding, factors) = (Pair::from([ROUNDING, ROUNDING_N]), Pair::from([1.0, by.step_s]));
+        let mut two = Two::new([filter, force_high_pass], [feel.highpass, self.force]);
         let mut pass = |row: &PadSample| {
             let moved = feel.quantity(output, row.pad_m, row.pad_velocity_m_s);
-            let passed = two.tick([moved, row.contact_force_n].into()).high;
-            passed.or_zero_below(rounding) * factors
+            finish(two.tick([moved, row.contact_force_n].into()).high)
         };
+        // Two samples at a time, so that the next stage finds whole vectors in memory.
         let (twos, last) = rows.as_chunks::<2>();
         let (felt_twos, last_felt) = felt.as_chunks_mut::<2>();
         let (impulse_twos, last_impulse) = impulse_n_s.as_chunks_mut::<2>();
@@ -115,7 +84,7 @@ impl AcCoupling {
         self.last_felt.abs() < still(output) || (self.last_felt - pad_m).abs() < still(output)
     }
 
-    /// Remainder of a contact that has come to rest.
+    /// Drops what is left of a contact that has come to rest.
     pub(super) fn settle(&mut self, output: &ContactOutput) {
         if self.last_felt.abs() < still(output) {
             self.last_felt = 0.0;
