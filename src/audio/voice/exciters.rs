@@ -177,9 +177,10 @@ impl Exciters {
         if self.pulses.is_empty(by.position) && self.pulse_mean == State::default() {
             return false;
         }
-        let mut next = self.pulses.drain(by.position);
-        let high_pass = &by.slot.stroking.pulse_high_pass;
-        out.iter_mut().for_each(|y| *y = self.pulse_mean.tick(high_pass, next()).high);
+        self.pulses.take_into(by.position, out);
+        let (high_pass, mut mean) = (&by.slot.stroking.pulse_high_pass, self.pulse_mean);
+        out.iter_mut().for_each(|y| *y = mean.tick(high_pass, *y).high);
+        self.pulse_mean = mean;
         true
     }
 
