@@ -20,7 +20,7 @@ mod rolling;
 mod skin;
 mod tap;
 
-pub(crate) use block::{Counts, Scratch, VoiceBlock};
+pub(crate) use block::{Scratch, VoiceBlock};
 pub(crate) use events::EMPTY_FORCE_N;
 
 use crate::audio::role::Role;
@@ -49,12 +49,12 @@ use tap::Tip;
 /// State of the sound and feel of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
-    /// Unused.
     Free,
-    /// Touching.
     Sounding,
     /// Going silent within `left` samples.
-    Fading { left: u32 },
+    Fading {
+        left: u32,
+    },
 }
 
 /// One contact.
@@ -74,12 +74,10 @@ pub(crate) struct Voice {
     slot: usize,
     asleep: bool,
     last_row: PadSample,
-    /// Reaction of the surface.
     reaction: Reaction,
     /// Sent to the body since the last row that was shown, N·s.
     unshown_n_s: f64,
     path: Path,
-    /// Place in the micro-relief.
     cells: TileCells,
     between: Between,
     rolling: Rolling,
@@ -98,8 +96,7 @@ impl Voice {
         Self::idle(slot, shared, shared.sample_rate_hz)
     }
 
-    /// A small voice in the place of one that another thread renders; never rendered itself.
-    /// Allocates.
+    /// Stands for one that another thread renders; never rendered itself. Allocates.
     pub(crate) fn placeholder(shared: &Shared) -> Self {
         Self::idle(0, shared, 0.0)
     }
@@ -189,8 +186,7 @@ impl Voice {
         pressing
     }
 
-    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it,
-    /// wherever the stretch ends.
+    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it.
     fn until_silent<'a>(&self, stretch: Stretch<'a>) -> Stretch<'a> {
         match self.phase {
             Phase::Fading { left } => Stretch { n: stretch.n.min(left as usize), ..stretch },
@@ -198,8 +194,7 @@ impl Voice {
         }
     }
 
-    /// Touches the surface, at the steps of the absolute grid and before its heights are sampled: a
-    /// surface that gives way answers within the same cell wherever it is cut into stretches. A
+    /// Touches the surface at the steps of the absolute grid, before its heights are sampled. A
     /// sleeping contact still touches, and wakes when the ground stirs.
     fn touch(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
         if stretch.is_on_grid() {
@@ -208,8 +203,7 @@ impl Voice {
         }
     }
 
-    /// Updates what is slow, at the steps of the absolute grid. By itself, because most short
-    /// stretches have none.
+    /// Updates what is slow, at the steps of the absolute grid; most short stretches have none.
     #[inline(never)]
     fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, .. } = stretch;

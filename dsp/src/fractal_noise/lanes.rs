@@ -50,17 +50,13 @@ struct Lanes<const N: usize, V: Vector<N>> {
 
 impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     #[inline(always)]
-    fn new(
-        v: V,
-        noise: &FractalNoise,
-        position_m: &[[f64; 2]; N],
-        footprint_m: &[f64; N],
-    ) -> Self {
+    fn new(v: V, noise: &FractalNoise, position_m: &[[f64; 2]; N], footprint_m: &[f64; N]) -> Self {
         let [x, y] = v.load_points(position_m);
         let at = [within_reach(v, x), within_reach(v, y)];
         let [first, second, third] = &noise.rotations;
         // Written out: what goes through `map` is a call for each.
-        let mut lattices = [Lattice::near(v, at, first), Lattice::near(v, at, second), Lattice::near(v, at, third)];
+        let mut lattices =
+            [Lattice::near(v, at, first), Lattice::near(v, at, second), Lattice::near(v, at, third)];
         if !v.all_reach(&lattices[0].bounds, &[-NEAR; 4]) {
             // Nobody goes there: the fewer instructions the better.
             let rotations = lattices.iter_mut().zip(&noise.rotations).take(core::hint::black_box(ROTATIONS));

@@ -8,8 +8,8 @@ use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::seat::Seat;
 use crate::audio::shared::{At, Shared, Stretch};
-use crate::audio::voice::{Counts, Phase, Scratch, Voice, VoiceBlock};
-use crate::link::stats::Counters;
+use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
+use crate::link::stats::{Counters, Counts};
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
@@ -90,10 +90,7 @@ impl Gathering<'_> {
     }
 
     fn count(&self, counters: &Counters) {
-        Counters::add(&counters.micro_collisions, self.counts.collisions);
-        Counters::add(&counters.shortened_collisions, self.counts.shortened);
-        Counters::add(&counters.quarantined, self.counts.resets);
-        Counters::add(&counters.blows, self.counts.blows);
+        counters.count(self.counts);
         Counters::add(&counters.rubs_crowded_out, self.crowded);
     }
 }

@@ -7,11 +7,9 @@
 //! e: rms of the relief beside the cubics through its samples; F/k: how deep the pad is pressed in.
 //! A pad pressed in deeper follows the cubic as well as it would follow the ground: 0.1 of F/k on a
 //! stroke that leaves the ground at every crest is heard at −33 dB, 0.03 at −40, 0.01 at −50 dB.
-//! Known midway a twenty-fifth of e is left, at the quarters a three-hundredth. Only octaves count
-//! without which more than 0.001 F/k would be missed. A stroke of 0.05 m/s under 0.8 N pays on no
-//! roughness up to 0.8. Decided where a contact begins and at the steps of the absolute sample grid;
-//! only for the integrator that knows events. Beginning anew costs three samples of cubic, hence the
-//! hysteresis.
+//! Known midway a twenty-fifth of e is left, at the quarters a three-hundredth. A stroke of 0.05 m/s
+//! under 0.8 N pays on no roughness up to 0.8. Only for the integrator that knows events. Beginning
+//! anew costs three samples of cubic, hence the hysteresis.
 
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
@@ -52,12 +50,8 @@ pub(super) struct Between {
 impl Default for Between {
     /// The first ground is as rough as any.
     fn default() -> Self {
-        Self {
-            closeness: Closeness::AtSamples,
-            octave: OCTAVES,
-            roughness: 1.0,
-            bends: Bends::default(),
-        }
+        let (closeness, bends) = (Closeness::AtSamples, Bends::default());
+        Self { closeness, octave: OCTAVES, roughness: 1.0, bends }
     }
 }
 
@@ -118,8 +112,7 @@ impl Between {
         (self.closeness != Closeness::AtSamples).then_some(OnTheWay { octave: self.octave, quarters, from_m })
     }
 
-    /// The ground of `n` samples, whose short waves were sampled; `bends` is memory for what it does
-    /// beside the cubics.
+    /// The ground of `n` samples, by its short waves; `bends` is memory.
     pub(super) fn ground<'a>(
         &mut self,
         shared: &Shared,

@@ -1,12 +1,13 @@
 //! Memory of a stretch: the signals between the stages, and what leaves a voice.
 
 use super::profile::Profile;
-use super::tap::Shown;
 use super::{PadSample, PathPoint};
+use crate::link::stats::Counts;
+use crate::link::tap::ContactRows;
 use asperity_dsp::hertz::FORCE_HISTORY;
 use asperity_dsp::micro_contact::Bend;
 use asperity_texture::height_field::MAX_BLOCK;
-use std::ops::{AddAssign, Range};
+use std::ops::Range;
 
 /// Outputs of the stages, in their order; one for all voices.
 pub(crate) struct Scratch {
@@ -17,7 +18,7 @@ pub(crate) struct Scratch {
     pub(super) rows: [PadSample; MAX_BLOCK],
     /// Impulses of the alternating force behind those of the stretch before, N·s.
     pub(super) force_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
-    pub(super) shown: Shown,
+    pub(super) shown: ContactRows,
     /// Boxed: with several threads it changes hands, and is not copied.
     pub(crate) out: Box<VoiceBlock>,
 }
@@ -43,27 +44,6 @@ pub(crate) struct RubBlock {
     pub(crate) normal_force_n: [f64; MAX_BLOCK],
 }
 
-/// Events of a stretch that are counted.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Counts {
-    pub(crate) collisions: u64,
-    /// Collisions that would have lasted longer.
-    pub(crate) shortened: u64,
-    /// States that were no longer finite and begun anew.
-    pub(crate) resets: u64,
-    /// Contact forces beyond thirty times what pressed.
-    pub(crate) blows: u64,
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, more: Self) {
-        self.collisions += more.collisions;
-        self.shortened += more.shortened;
-        self.resets += more.resets;
-        self.blows += more.blows;
-    }
-}
-
 impl Scratch {
     pub(crate) fn new() -> Box<Self> {
         Box::new(Self {
@@ -72,7 +52,7 @@ impl Scratch {
             bends: [[[0.0; 4]; 2]; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
             force_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
-            shown: Shown::new(),
+            shown: ContactRows::new(),
             out: Box::new(VoiceBlock::new()),
         })
     }

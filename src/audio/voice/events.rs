@@ -20,8 +20,7 @@ pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 /// Span that a contact that appears is taken to have slid, s: the memory of a 10 Hz high-pass.
 const TREND_S: f64 = 0.025;
 
-/// Time before it appears at which the pad leaves its straight line for the ground, s. The same at
-/// every rate, because a finger remembers for tenths of a second how it began.
+/// Time before it appears at which the pad leaves its straight line for the ground, s.
 const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
 /// Heights about the place where it does.
@@ -90,8 +89,7 @@ impl Voice {
         self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
-        // It leaves the line where the ground is known about it: a step before, there, and a step
-        // later.
+        // It leaves the line where the ground is known a step before, there, and a step later.
         self.lay_behind((steps + 1, step_s, ABOUT), at, seat, scratch);
         let Profile { surface, rough, .. } = &mut scratch.profile;
         self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
@@ -122,8 +120,7 @@ impl Voice {
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 
-    /// The profile under `count` points behind the contact, a step of `step_s` apart, of which the
-    /// first is `steps` behind.
+    /// The profile under `count` points behind the contact, of which the first is `steps` behind.
     fn lay_behind(
         &mut self,
         (steps, step_s, count): (usize, f64, usize),
@@ -141,8 +138,7 @@ impl Voice {
         profile.run(seat, along, points, &mut self.cells);
     }
 
-    /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`]: the parabola nearest
-    /// to it.
+    /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`].
     fn trend(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
         let step_s = TREND_S / MAX_BLOCK as f64;
         self.lay_behind((MAX_BLOCK, step_s, MAX_BLOCK), at, seat, scratch);
@@ -201,8 +197,7 @@ impl Voice {
     }
 
     /// The force to render for a report, or none if the contact has left the surface. One report
-    /// without force holds the force before it: solvers make such from a finger that never left, and
-    /// one thrown off for a sixtieth of a second is felt as a blow.
+    /// without force holds the force before it: solvers make such from a finger that never left.
     pub(crate) fn pressed_n(&mut self, reported_n: f64) -> Option<f64> {
         if reported_n > EMPTY_FORCE_N {
             self.empty_reports = 0;

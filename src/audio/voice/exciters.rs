@@ -7,10 +7,9 @@
 //! friction ── speed and force along the motion → the body's own step (`prepared::body_rub`)
 //! ```
 //! The force sounds by itself, because a pad that never lifts off would be silent (ours, not the
-//! document's). Pulses push and never pull, so that a stroke of many holds the body bent: inaudible,
-//! but of the sound's energy and head room; a high-pass of second order takes the bend. Pulses and
-//! force meet sample by sample, not in the ring, so that the order of additions depends on no split
-//! into blocks.
+//! document's). Pulses push and never pull: a stroke of many would hold the body bent, which costs
+//! head room; a high-pass takes the bend. Pulses and force meet sample by sample, not in the ring,
+//! so that the order of additions depends on no split into blocks.
 
 use super::block::{RubBlock, VoiceBlock};
 use super::{PadSample, PathPoint};

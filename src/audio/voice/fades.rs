@@ -1,6 +1,5 @@
-//! Fades of a contact that comes or goes: raised cosines, without step or corner. In for a contact
-//! that was suddenly there (a landing has its own beginning), out for one that ended, lapsed or was
-//! stolen.
+//! Fades: raised cosines, in for a contact that was suddenly there (a landing has its own
+//! beginning), out for one that ended, lapsed or was stolen.
 
 use super::Phase;
 use super::block::VoiceBlock;

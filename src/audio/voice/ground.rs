@@ -2,19 +2,19 @@
 //! nothing of it moves or sounds it falls asleep, and costs nothing until something stirs.
 
 use super::profile::Along;
-use super::rolling::{RolledOver, Rolling};
+use super::rolling::Rolling;
 use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Shared, Stretch};
 use crate::prepared::area::{loudness, nestling};
+use crate::prepared::rolled_over::RolledOver;
 use crate::prepared::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
 use asperity_texture::height_field::{SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
-    /// Probe that presses on the touched body from here on, as stiff as ground and force make it, to
-    /// a quarter of an octave; none while nothing presses. Asked for at the steps of the absolute
-    /// grid, before a stretch: how it presses at its end would depend on where the blocks are cut.
+    /// Probe that presses on the touched body from a step of the absolute grid on, as stiff as
+    /// ground and force make it, to a quarter of an octave; none while nothing presses.
     pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
         let force_n = self.path.last.normal_force_n;
         if !stretch.is_on_grid() || self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
@@ -27,8 +27,7 @@ impl Voice {
         Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
-    /// Loudness: the harder it is pressed and the closer it nestles to the ground, the more of a
-    /// contact sounds.
+    /// Loudness: grows with force and with how closely the tip nestles to the ground.
     pub(super) fn loudness(
         &self,
         shared: &Shared,
@@ -57,8 +56,7 @@ impl Voice {
         then(&mut self.rolling, RolledOver { slot, source_power_m2, probe, at, sample_rate_hz });
     }
 
-    /// Decides what of the ground is sampled between samples: when it begins, and at the steps of
-    /// the absolute grid.
+    /// Decides what of the ground is sampled between samples: as it begins, and on the grid.
     pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
         if self.path.is_in_body() || self.rolling.rolls() {
             return self.between.leave();

@@ -2,15 +2,13 @@
 //! forces in, one [row](PadSample) a sample out.
 
 use super::PadSample;
-use super::block::Counts;
+use crate::link::stats::Counts;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
 use asperity_dsp::micro_contact::{ContactState, GroundBetween, MicroContact, Probe};
 
-/// A contact force so many times what presses is a blow. Fingertips reach 13 on ordinary ribs. A
-/// heavy or stiff probe leaves the ground at its crests and comes down with v √(k m), whatever
-/// presses it: rendered as physics has it, and counted, because who reports a light touch does not
-/// expect it.
+/// A contact force so many times what presses is a blow: a heavy or stiff probe comes down from a
+/// crest with v √(k m), whatever presses it. Fingertips reach 13 on ordinary ribs.
 const BLOW: f64 = 30.0;
 /// Less than this is no touch but a contact that fades, N.
 const LIGHTEST_N: f64 = 0.01;
@@ -73,11 +71,8 @@ impl Pad {
     }
 
     /// Has been sliding along a line that rises by `rise_m_s`, finger and pad with it: set off from
-    /// rest they would still swing when they are felt. The rise is that of the time that a finger
-    /// answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
-    ///
-    /// The heights are those a sample before it leaves the line, there, and a sample later; returns
-    /// how many heights after the middle one it has been given.
+    /// rest they would still swing when they are felt. The heights are those a sample before it
+    /// leaves the line, there, and a sample later; returns how many after the middle one it has got.
     pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
         self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
         self.model.latency_samples()
@@ -128,8 +123,7 @@ impl Pad {
         }
     }
 
-    /// Until it touches, a pad that comes down is as far as the surface: nothing is felt of its way
-    /// through the air.
+    /// Nothing is felt of the way through the air: until it touches, a pad is as far as the surface.
     fn feel_no_air(&mut self, rows: &mut [PadSample]) {
         for row in rows {
             if row.onset.is_some() || row.pad_m < row.height_m {

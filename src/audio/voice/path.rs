@@ -9,8 +9,7 @@ use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
-/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
+/// Landings within this distance of the lift-off can be the same touch, m: a fingertip's width.
 const SAME_TOUCH_M: f64 = 0.01;
 
 /// Event of an unused path.
@@ -61,8 +60,7 @@ impl Path {
         self.in_body.is_some()
     }
 
-    /// Follows a report. A jump that no stroke makes changes nothing: it returns the path that
-    /// begins where the contact now is.
+    /// Follows a report; a jump that no stroke makes returns the path that begins there instead.
     pub(super) fn moved(
         &mut self,
         sample: &ContactSample,
@@ -147,8 +145,8 @@ fn path_event(sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> PathE
 
 fn body_events(sample: &ContactSample, stamp: Stamp) -> Option<[PathEvent; 2]> {
     let [x, y, z] = sample.at_m?;
-    let (normal_force_n, event) = (sample.normal_force_n, PathEvent { sample: stamp.sample(), ..IDLE });
-    let event = PathEvent { fraction: stamp.fraction(), normal_force_n, ..event };
+    let (at, fraction, normal_force_n) = (stamp.sample(), stamp.fraction(), sample.normal_force_n);
+    let event = PathEvent { sample: at, fraction, normal_force_n, ..IDLE };
     Some([[x, y], [z, 0.0]].map(|position_m| PathEvent { position_m, ..event }))
 }
 

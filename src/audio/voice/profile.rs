@@ -13,7 +13,6 @@ use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 pub(super) struct Along<'a> {
     pub(super) shared: &'a Shared,
     pub(super) tip_radius_m: f64,
-    /// Number of the contact.
     pub(super) contact: usize,
     /// Absolute index of the first sample.
     pub(super) position: u64,
@@ -59,8 +58,7 @@ impl Profile {
         }
     }
 
-    /// Height of each point and the force that presses there; `cells` speed it up and change no
-    /// bit.
+    /// Height of each point and the force that presses there; `cells` change no bit.
     pub(super) fn run(
         &mut self,
         seat: &mut Seat,
@@ -111,8 +109,7 @@ impl Profile {
         }
     }
 
-    /// Lays the points out quantity by quantity, with the way that a sample of each covers; their
-    /// least and greatest coordinates.
+    /// Lays the points out quantity by quantity; their least and greatest coordinates.
     fn lay_out(&mut self, shared: &Shared, points: &[PathPoint]) -> [[f64; 2]; 2] {
         let mut bounds_m = [f64::INFINITY, f64::NEG_INFINITY].map(|nothing| Pair::from([nothing; 2]));
         let step_s = 1.0 / shared.sample_rate_hz;

@@ -2,8 +2,7 @@
 //!
 //! An acceleration goes through ridge and tissue (`dsp::actuator::Skin`). A displacement stays the
 //! pad's; where the channel asks for it, it grows with the area of contact, ∝ (F / 1 N)ⁿ
-//! (`model::actuator::FELT_FORCE_EXPONENT`). For actuators that play that, friction drags the skin
-//! sideways (`dsp::tangential`): rows whose pad is where the skin has been dragged to.
+//! (`model::actuator::FELT_FORCE_EXPONENT`). Friction drags it sideways (`dsp::tangential`).
 
 use super::PadSample;
 use super::coupling::STILL_M_S2;
@@ -15,8 +14,7 @@ use asperity_dsp::tangential::{MASS_KG, Tangential, TangentialState, friction_fo
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
 
-/// Below this speed friction no longer jumps with the direction, m/s: a resting finger is not
-/// dragged.
+/// Below this speed friction no longer jumps with the direction, m/s.
 const SETTLING_M_S: f64 = 1e-3;
 
 /// The skin of one contact; nothing where the pad's own motion is played.

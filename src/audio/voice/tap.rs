@@ -5,38 +5,13 @@ use super::block::Scratch;
 use super::{PadSample, PathPoint, Voice};
 use crate::audio::seat::Seat;
 use crate::audio::shared::Stretch;
-use crate::link::tap::{ContactBlock, Tap};
+use crate::link::tap::Tap;
 use crate::model::event::{Actuator, ContactSample};
 use asperity_texture::answer::{AnswerAt, capped};
-use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
+use asperity_texture::height_field::SurfaceBlock;
 
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
-
-/// The rows that a tap is shown.
-pub(super) struct Shown {
-    position_m: [[f64; 2]; MAX_BLOCK],
-    velocity_m_s: [[f64; 2]; MAX_BLOCK],
-    uv: [[f64; 2]; MAX_BLOCK],
-    rows: [PadSample; MAX_BLOCK],
-    impulse_n_s: [f64; MAX_BLOCK],
-    force_n: [[f64; 3]; MAX_BLOCK],
-    cap_n: [f64; MAX_BLOCK],
-}
-
-impl Shown {
-    pub(super) fn new() -> Self {
-        Self {
-            position_m: [[0.0; 2]; MAX_BLOCK],
-            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
-            uv: [[0.0; 2]; MAX_BLOCK],
-            rows: [PadSample::default(); MAX_BLOCK],
-            impulse_n_s: [0.0; MAX_BLOCK],
-            force_n: [[0.0; 3]; MAX_BLOCK],
-            cap_n: [0.0; MAX_BLOCK],
-        }
-    }
-}
 
 impl Voice {
     /// Shows the stretch to a tap that watches, a row for each sample that leaves; a contact that
@@ -74,7 +49,7 @@ impl Voice {
             shown.position_m[count] = point.position_m;
             shown.velocity_m_s[count] = point.velocity_m_s;
             shown.uv[count] = [u_m / slot.surface.width_m, v_m / slot.surface.height_m];
-            shown.rows[count] = rows[i];
+            shown.contact_samples[count] = rows[i];
             shown.impulse_n_s[count] = std::mem::take(&mut self.unshown_n_s);
             shown.force_n[count] = self.tip.force_n(&point, &rows[i], &ground);
             shown.cap_n[count] = ground.answer.cap_n;
@@ -83,18 +58,8 @@ impl Voice {
         if !self.asleep && n > 0 {
             self.tip.ground = Ground::at(&profile.surface, n - 1);
         }
-        tap.contact(&ContactBlock {
-            first_sample,
-            contact: self.contact,
-            actuator: self.role.actuator.map(|channel| Actuator(channel as u16)),
-            position_m: &shown.position_m[..count],
-            uv: &shown.uv[..count],
-            velocity_m_s: &shown.velocity_m_s[..count],
-            contact_samples: &shown.rows[..count],
-            impulse_n_s: &shown.impulse_n_s[..count],
-            force_n: &shown.force_n[..count],
-            cap_n: &shown.cap_n[..count],
-        });
+        let actuator = self.role.actuator.map(|channel| Actuator(channel as u16));
+        tap.contact(&shown.block(self.contact, actuator, first_sample, count));
     }
 }
 
