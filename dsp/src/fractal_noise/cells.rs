@@ -41,6 +41,11 @@ pub(super) fn near_cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Ce
 }
 
 impl<W: Copy> Cells<W> {
+    /// Sums on both counts.
+    pub(super) fn at(place: W) -> Self {
+        Self { index: place, fraction: place }
+    }
+
     /// Places in the cells of octave `i`, from their centres in 2⁻³² cells.
     #[inline(always)]
     pub(super) fn place<const N: usize, V: Vector<N, Word = W>>(&self, v: V, i: u32, offset: Offset) -> W {

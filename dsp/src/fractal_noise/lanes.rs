@@ -28,19 +28,27 @@ struct Lattice<W> {
     bounds: Bounds,
 }
 
-impl<W> Lattice<W> {
-    /// Positions that are [`NEAR`].
+/// Memory that is filled anew for every N samples.
+struct Room<const N: usize, V: Vector<N>> {
+    lattices: [Lattice<V::Word>; ROTATIONS],
+    /// Share that is left of the finest octaves.
+    fades: [V::Single; OCTAVES],
+    /// Gains of the octaves where the roughness is not one for all.
+    gains: [V::Single; OCTAVES],
+}
+
+impl<const N: usize, V: Vector<N>> Room<N, V> {
     #[inline(always)]
-    fn near<const N: usize, V: Vector<N, Word = W>>(v: V, at: [V::Double; 2], rotation: &[f64; 2]) -> Self {
-        let [first, second] = turned(v, at, rotation);
-        Self { cells: [near_cells(v, first), near_cells(v, second)], bounds: v.bounds(first, second) }
+    fn new(v: V) -> Self {
+        let nowhere = Lattice { cells: [Cells::at(v.splat_word(0)); 2], bounds: [0.0; 4] };
+        let none = [v.splat(0.0); OCTAVES];
+        Self { lattices: [nowhere; ROTATIONS], fades: none, gains: none }
     }
 }
 
-/// N samples of a path in the form the octaves need.
+/// N samples of a path in the form the octaves need, beside what is in their [`Room`].
 struct Lanes<const N: usize, V: Vector<N>> {
     v: V,
-    lattices: [Lattice<V::Word>; ROTATIONS],
     /// Number of octaves, from the coarsest, that have cells much longer than all samples together.
     slow: usize,
     samples_per_metre: V::Single,
@@ -50,18 +58,25 @@ struct Lanes<const N: usize, V: Vector<N>> {
 
 impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     #[inline(always)]
-    fn new(v: V, noise: &FractalNoise, position_m: &[[f64; 2]; N], footprint_m: &[f64; N]) -> Self {
+    fn new(
+        v: V,
+        noise: &FractalNoise,
+        position_m: &[[f64; 2]; N],
+        footprint_m: &[f64; N],
+        lattices: &mut [Lattice<V::Word>; ROTATIONS],
+    ) -> Self {
         let [x, y] = v.load_points(position_m);
-        let at = [within_reach(v, x), within_reach(v, y)];
-        let [first, second, third] = &noise.rotations;
-        // Written out: what goes through `map` is a call for each.
-        let mut lattices =
-            [Lattice::near(v, at, first), Lattice::near(v, at, second), Lattice::near(v, at, third)];
+        let (x, y) = (within_reach(v, x), within_reach(v, y));
+        for (lattice, rotation) in lattices.iter_mut().zip(&noise.rotations) {
+            let [first, second] = turned(v, [x, y], rotation);
+            lattice.bounds = v.bounds(first, second);
+            lattice.cells = [near_cells(v, first), near_cells(v, second)];
+        }
         if !v.all_reach(&lattices[0].bounds, &[-NEAR; 4]) {
             // Nobody goes there: the fewer instructions the better.
             let rotations = lattices.iter_mut().zip(&noise.rotations).take(core::hint::black_box(ROTATIONS));
             for (lattice, rotation) in rotations {
-                let [first, second] = turned(v, at, rotation);
+                let [first, second] = turned(v, [x, y], rotation);
                 lattice.cells = [cells(v, first), cells(v, second)];
             }
         }
@@ -70,7 +85,6 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         let (shortest_footprint_m, longest_footprint_m) = v.extremes(footprint);
         Self {
             v,
-            lattices,
             slow: slow_octaves(noise, way_m(position_m)),
             samples_per_metre: v.div(v.splat(1.0), v.add(footprint, v.splat(f32::MIN_POSITIVE))),
             shortest_footprint_m,
@@ -78,65 +92,84 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         }
     }
 
+    /// Fate of the finest octaves: those from `alive` on are gone, those from `steady` on fade, or
+    /// the finest stands in for finer ones; coarser ones are whole.
+    #[inline(always)]
+    fn fades(
+        &self,
+        noise: &FractalNoise,
+        tail_boost: V::Single,
+        fades: &mut [V::Single; OCTAVES],
+    ) -> (usize, usize) {
+        let v = self.v;
+        let one = v.splat(1.0);
+        let mut finer = v.splat(0.0); // footprint weight of the next finer octave
+        let (mut alive, mut steady) = (OCTAVES, OCTAVES);
+        let mut all_finer = false; // … is exactly 1 everywhere
+        for (octave, fade) in noise.octaves.iter().zip(fades).rev() {
+            let whole = octave.cell_m >= WHOLE * self.longest_footprint_m;
+            if whole && all_finer {
+                break;
+            }
+            steady -= 1;
+            if octave.cell_m <= GONE * self.shortest_footprint_m {
+                alive = steady;
+            }
+            let mut weight = one;
+            if !whole {
+                weight = footprint_weight(v, v.mul(v.splat(octave.cell_m), self.samples_per_metre));
+            }
+            *fade = v.mul(weight, v.add(one, v.mul(tail_boost, v.sub(one, finer))));
+            finer = weight;
+            all_finer = whole;
+        }
+        (alive, steady)
+    }
+
     /// Sums of all octaves, from the finest to the coarsest of each set of weights; every octave is
-    /// worked out once for all sets. The finest are gone where their cells pass in less than two
-    /// samples, and fade up to four; the finest that is left stands in for finer ones.
+    /// worked out once for all sets.
     #[inline(always)]
     fn sums<const W: usize>(
         &self,
         noise: &FractalNoise,
         (rough, even): (&Rough<V::Single>, &Even<W>),
         sets: &[&OctaveWeights; W],
-        last: &mut [KnownCell; OCTAVES],
+        (last, room): (&mut [KnownCell; OCTAVES], &mut Room<N, V>),
     ) -> [V::Single; W] {
         let v = self.v;
-        let one = v.splat(1.0);
+        let Room { lattices, fades, gains } = room;
+        let (alive, steady) = self.fades(noise, rough.gains.tail_boost, fades);
+        // Octaves below this one have a plain number for each set.
+        let plain = if rough.even { steady } else { 0 };
+        if !rough.even {
+            let mut gain = rough.gains.finest;
+            for gains in gains.iter_mut().rev() {
+                *gains = gain;
+                gain = v.mul(gain, rough.gains.coarser);
+            }
+        }
         let mut sums = [v.splat(0.0); W];
         let (mut coarsest, mut end) = ([OCTAVES; W], OCTAVES);
         for (coarsest, set) in coarsest.iter_mut().zip(sets) {
             *coarsest = set.coarsest;
             end = end.min(set.coarsest);
         }
-        let mut rough_gain = rough.gains.finest;
-        // Weight by footprint of the next finer octave; whether it is exactly 1 everywhere.
-        let (mut finer, mut all_finer) = (v.splat(0.0), false);
-        let mut fades = true;
-        for i in (end..OCTAVES).rev() {
+        for i in (end..alive).rev() {
             let octave = &noise.octaves[i];
-            let gain = rough_gain;
-            if !rough.even {
-                rough_gain = v.mul(gain, rough.gains.coarser);
-            }
-            let mut fade = one;
-            let whole = octave.cell_m >= WHOLE * self.longest_footprint_m;
-            fades &= !(whole && all_finer);
-            if fades {
-                let mut weight = one;
-                if !whole {
-                    weight = footprint_weight(v, v.mul(v.splat(octave.cell_m), self.samples_per_metre));
-                }
-                fade = v.mul(weight, v.add(one, v.mul(rough.gains.tail_boost, v.sub(one, finer))));
-                (finer, all_finer) = (weight, whole);
-                if octave.cell_m <= GONE * self.shortest_footprint_m {
-                    continue;
-                }
-            }
-            let lattice = &self.lattices[octave.rotation as usize];
+            let lattice = &lattices[octave.rotation as usize];
             let value = self.octave(octave, lattice, i < self.slow, &mut last[i]);
             for (w, sum) in sums.iter_mut().enumerate() {
                 if W > 1 && i < coarsest[w] {
                     continue;
                 }
                 let mut scale = v.splat(even.scales[w][i]);
-                if fades || !rough.even {
-                    let (mut gain, mut weight) = (gain, v.splat(even.weights[w][i]));
-                    if rough.even {
-                        gain = v.splat(even.gains[i]);
-                    } else {
-                        weight = polynomial(v, rough.lanes, &sets[w].of[i]);
+                if i >= plain {
+                    let (mut gain, mut weight) = (v.splat(even.gains[i]), v.splat(even.weights[w][i]));
+                    if !rough.even {
+                        (gain, weight) = (gains[i], polynomial(v, rough.lanes, &sets[w].of[i]));
                     }
-                    if fades {
-                        weight = v.mul(weight, fade);
+                    if i >= steady {
+                        weight = v.mul(weight, fades[i]);
                     }
                     scale = v.mul(gain, weight);
                 }
@@ -239,18 +272,19 @@ fn add<const N: usize, const W: usize, V: Vector<N>>(
     let whole = positions.len().min(footprints.len()).min(roughnesses.len());
     let (positions, footprints, roughnesses) =
         (&positions[..whole], &footprints[..whole], &roughnesses[..whole]);
+    let mut left = Left { position_m: [[0.0; 2]; N], footprint_m: [0.0; N], roughness: [0.0; N] };
     let mut even = Even::UNKNOWN;
+    let mut room = Room::new(v);
     for chunk in 0..n.div_ceil(N) {
-        let left;
         let (position_m, footprint_m, roughness) = if chunk < whole {
             (&positions[chunk], &footprints[chunk], &roughnesses[chunk])
         } else {
-            left = Left::of(path, roughness, chunk * N);
+            left.fill(path, roughness, chunk * N);
             (&left.position_m, &left.footprint_m, &left.roughness)
         };
         let rough = Rough::new(v, sets, roughness, &mut even);
-        let lanes = Lanes::new(v, noise, position_m, footprint_m);
-        let sums = lanes.sums(noise, (&rough, &even), sets, known);
+        let lanes = Lanes::new(v, noise, position_m, footprint_m, &mut room.lattices);
+        let sums = lanes.sums(noise, (&rough, &even), sets, (known, &mut room));
         for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
             let heights_m = heights_m.get_mut(chunk * N..).unwrap_or_default();
             if let Some(heights_m) = heights_m.first_chunk_mut() {
@@ -275,12 +309,10 @@ struct Left<const N: usize> {
 
 impl<const N: usize> Left<N> {
     #[cold]
-    fn of(path: &NoisePath<'_>, roughness: &[f64], start: usize) -> Self {
-        Self {
-            position_m: padded(path.position_m, start, [0.0; 2]),
-            footprint_m: padded(path.footprint_m, start, 0.0),
-            roughness: padded(roughness, start, 0.0),
-        }
+    fn fill(&mut self, path: &NoisePath<'_>, roughness: &[f64], start: usize) {
+        self.position_m = padded(path.position_m, start, self.position_m[0]);
+        self.footprint_m = padded(path.footprint_m, start, self.footprint_m[0]);
+        self.roughness = padded(roughness, start, self.roughness[0]);
     }
 }
 
