@@ -46,7 +46,7 @@ use rolling::Rolling;
 use skin::{ContactSkin, Drag};
 use tap::Tip;
 
-/// State of the sound and feel of a voice.
+/// State of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
     Free,

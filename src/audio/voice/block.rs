@@ -13,7 +13,6 @@ use std::ops::Range;
 pub(crate) struct Scratch {
     pub(super) points: [PathPoint; MAX_BLOCK],
     pub(super) profile: Profile,
-    /// Bends of the profile between samples.
     pub(super) bends: [[Bend; 2]; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
     /// Impulses of the alternating force behind those of the stretch before, N·s.

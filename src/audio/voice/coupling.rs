@@ -18,7 +18,8 @@ pub(super) const STILL_M_S2: f64 = 1e-6;
 pub(super) struct AcCoupling {
     pub(super) feel: ContactOutputState,
     pub(super) force: State,
-    last_felt: f64,
+    /// Haptic output of a resting contact, too.
+    pub(super) last_felt: f64,
 }
 
 impl AcCoupling {
@@ -71,11 +72,6 @@ impl AcCoupling {
         [feel.highpass, self.force] = two.states();
         self.feel = feel;
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
-    }
-
-    /// Haptic output of a resting contact.
-    pub(super) fn rest(&self, felt: &mut [f64]) {
-        felt.fill(self.last_felt);
     }
 
     /// Tests whether nothing of a pad at `pad_m` is felt to move. Without a high-pass a resting pad

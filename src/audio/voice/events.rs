@@ -54,7 +54,8 @@ impl Voice {
         let ground = slot.stroking.ground;
         seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
-        self.drag.begin(force_n);
+        self.drag.begins = true;
+        self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
             let along = self.along(shared, position, false);

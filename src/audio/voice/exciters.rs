@@ -41,9 +41,7 @@ pub(super) struct Excited<'a> {
     pub(super) probe: &'a PreparedProbe,
     pub(super) reaction: Reaction,
     pub(super) sample_rate_hz: f64,
-    /// Samples between two steps of loudness.
     pub(super) slow_step: u64,
-    /// Absolute index of the first sample.
     pub(super) position: u64,
 }
 

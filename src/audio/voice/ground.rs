@@ -10,7 +10,7 @@ use crate::prepared::area::{loudness, nestling};
 use crate::prepared::rolled_over::RolledOver;
 use crate::prepared::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::{SurfaceBlock, Touch, TouchKind};
+use asperity_texture::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
     /// Probe that presses on the touched body from a step of the absolute grid on, as stiff as
@@ -67,9 +67,10 @@ impl Voice {
 
     /// Request for its profile.
     pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
+        let (contact, first_sample) = (self.slot, position);
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        let in_body = self.path.is_in_body();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, between: None }
+        let block = PathBlock { contact, first_sample, slopes, tip_radius_m, ..PathBlock::default() };
+        Along { shared, block, in_body: self.path.is_in_body(), between: None }
     }
 
     /// Touch at its last sample.
@@ -84,7 +85,7 @@ impl Voice {
         scratch.points[..n].fill(self.path.last);
         scratch.rows[..n].fill(self.last_row);
         let out = &mut scratch.out;
-        self.ac.rest(&mut out.haptic[..n]);
+        out.haptic[..n].fill(self.ac.last_felt);
         out.impulse_n_s[..n].fill(0.0);
         (out.excites, out.counts) = (false, Default::default());
     }

@@ -12,12 +12,8 @@ use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 #[derive(Clone, Copy)]
 pub(super) struct Along<'a> {
     pub(super) shared: &'a Shared,
-    pub(super) tip_radius_m: f64,
-    pub(super) contact: usize,
-    /// Absolute index of the first sample.
-    pub(super) position: u64,
-    /// Slopes too: neither sound nor feel needs them.
-    pub(super) slopes: bool,
+    /// Contact, tip, first sample; slopes too, which neither sound nor feel needs.
+    pub(super) block: PathBlock<'a>,
     /// Places in the body are known, [`Profile::at_m`].
     pub(super) in_body: bool,
     /// Short waves between samples too.
@@ -82,13 +78,9 @@ impl Profile {
             velocity_m_s: &self.velocity_m_s[..n],
             footprint_m: &self.footprint_m[..n],
             normal_force_n: &self.force_n[..n],
-            first_sample: along.position,
-            contact: along.contact,
-            slopes: along.slopes,
-            tip_radius_m: along.tip_radius_m,
             at_m: if along.in_body { &self.at_m[..n] } else { &[] },
             bounds_m: Some(bounds_m),
-            ..PathBlock::default()
+            ..along.block
         };
         let mut noise = Noise {
             field: &along.shared.noise,

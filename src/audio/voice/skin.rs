@@ -74,7 +74,7 @@ pub(super) struct Drag {
     design: Option<Tangential>,
     state: TangentialState,
     /// True until the first row: its force has been there for long.
-    begins: bool,
+    pub(super) begins: bool,
     rows: [PadSample; MAX_BLOCK],
 }
 
@@ -86,12 +86,6 @@ impl Drag {
             begins: true,
             rows: [PadSample::default(); MAX_BLOCK],
         }
-    }
-
-    /// Another contact begins, pressed like this.
-    pub(super) fn begin(&mut self, force_n: f64) {
-        self.begins = true;
-        self.press(force_n);
     }
 
     /// Becomes as stiff as this force makes it: at the steps of the absolute grid.
