@@ -126,7 +126,7 @@ counters! {
     contacts,
 }
 
-/// What a contact counts in a stretch.
+/// Counts of a contact in a stretch.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Counts {
     pub(crate) collisions: u64,

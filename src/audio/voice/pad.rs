@@ -72,7 +72,7 @@ impl Pad {
 
     /// Has been sliding along a line that rises by `rise_m_s`, finger and pad with it: set off from
     /// rest they would still swing when they are felt. The heights are those a sample before it
-    /// leaves the line, there, and a sample later; returns how many after the middle one it has got.
+    /// leaves the line, there, and a sample later; returns how many after the middle it has got.
     pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
         self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
         self.model.latency_samples()
@@ -123,7 +123,7 @@ impl Pad {
         }
     }
 
-    /// Nothing is felt of the way through the air: until it touches, a pad is as far as the surface.
+    /// Nothing is felt of the way through the air: until it touches, a pad is at the surface.
     fn feel_no_air(&mut self, rows: &mut [PadSample]) {
         for row in rows {
             if row.onset.is_some() || row.pad_m < row.height_m {

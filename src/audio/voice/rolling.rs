@@ -1,9 +1,9 @@
 //! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard
 //! (`dsp::rolling`).
 //!
-//! Heights in, heights out, and before the body impulses in, impulses out. The share of rolling goes
-//! along a straight line between two steps of the absolute grid. A contact whose reports tell no
-//! slip slides, and its heights stay what they are to the bit.
+//! Heights in, heights out, and before the body impulses in, impulses out. The share of rolling
+//! goes along a straight line between two steps of the absolute grid. A contact whose reports tell
+//! no slip slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
 use crate::prepared::rolled_over::RolledOver;
