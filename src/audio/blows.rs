@@ -7,7 +7,7 @@
 //! Everything is linear, so all blows that one probe sends to one channel share a state, and
 //! nothing is computed while nothing moves.
 
-use super::voice::Shared;
+use super::shared::Shared;
 use crate::link::message::Felt;
 use crate::model::stamp::Stamp;
 use crate::prepared::bank::LONGEST_CONTACT_S;

@@ -7,6 +7,8 @@ pub(crate) mod occupied;
 pub(crate) mod outlets;
 mod pool;
 pub(crate) mod renderer;
+pub(crate) mod role;
 pub(crate) mod seat;
+pub(crate) mod shared;
 pub(crate) mod smoothed;
 pub(crate) mod voice;

@@ -8,7 +8,7 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{NoiseBetween, NoiseWay, Room, TileCells};
+use crate::prepared::overlay::{NoiseWay, OnTheWay, Room, ShortWaves, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
@@ -47,7 +47,7 @@ pub(crate) struct Noise<'a> {
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
-    pub(crate) between: Option<NoiseBetween<'a>>,
+    pub(crate) between: Option<(OnTheWay, &'a mut ShortWaves)>,
 }
 
 /// Consequence of setting a surface for the contacts on it.
@@ -357,7 +357,7 @@ impl SurfaceSlot {
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),
-                noise.between.as_mut(),
+                noise.between.as_mut().map(|(way, short)| (*way, &mut **short)),
             );
         }
     }

@@ -1,4 +1,5 @@
-//! Smoothed gain: a factor that follows its target without a step, by one pole a sample.
+//! Smoothed gains: factors that follow their target without a step, by one pole a sample or along a
+//! straight line.
 //!
 //! ```text
 //! g[n+1] = g[n] + (1 − e^(−1/(τ rate))) (target − g[n])          τ = 5 ms
@@ -46,6 +47,38 @@ impl Smoothed {
         let there = left.abs() <= THERE * target.abs().max(1.0);
         self.now = if there { target } else { self.now + self.share * left };
         self.now
+    }
+}
+
+/// A factor that is worked out at the steps of the absolute sample grid, so that it depends on no
+/// split into blocks, and goes along a straight line between two of them.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Ramp {
+    /// At the last step of the grid, and at the next.
+    ends: [f64; 2],
+}
+
+impl Ramp {
+    /// A factor that has been this for ever.
+    pub(crate) fn at(factor: f64) -> Self {
+        Self { ends: [factor; 2] }
+    }
+
+    /// Sets out for another.
+    pub(crate) fn aim(&mut self, factor: f64) {
+        self.ends = [self.ends[1], factor];
+    }
+
+    /// Multiplies samples of which the first has this place; `slow_step` samples lie between two
+    /// steps of the grid.
+    pub(crate) fn weigh(&self, position: u64, slow_step: u64, samples: &mut [f64]) {
+        let [from, to] = self.ends;
+        let first = (position % slow_step) as u32 + 1;
+        let steps = slow_step as f64;
+        for (i, sample) in (first..).zip(samples) {
+            let part = f64::from(i) / steps;
+            *sample *= from + part * (to - from);
+        }
     }
 }
 

@@ -1,17 +1,14 @@
 //! One contact: the signal path of the paper on one screen (Hasti, Fig. 2).
 //!
 //! ```text
-//! path → profile → pad ┬→ AC coupling → skin → felt ───────────┬→ fades → channel, body
-//!                      └→ AC coupling, exciters → impulses ────┘
+//! path → profile → pad ┬→ coupling → skin → felt ──────────┬→ fades → channel, body
+//!                      └→ coupling, exciters → impulses ───┘
 //! ```
-//! Each stage is a file: its own state, what it is told, inputs in, outputs out.
+//! [`Voice::render`] names the stages in their order; each is a file.
 
-mod ac_coupling;
 mod between;
 mod block;
-mod blows;
-mod body_path;
-mod drag;
+mod coupling;
 mod events;
 mod exciters;
 mod fades;
@@ -19,54 +16,45 @@ mod ground;
 mod pad;
 mod path;
 mod profile;
-mod rest;
-mod role;
 mod rolling;
-mod rub_block;
-mod scratch;
-mod shared;
 mod skin;
-mod tip;
-mod watching;
+mod tap;
 
-pub(crate) use block::VoiceBlock;
+pub(crate) use block::{Scratch, VoiceBlock};
 pub(crate) use events::EMPTY_FORCE_N;
-pub(crate) use role::Role;
-pub(crate) use scratch::Scratch;
-pub(crate) use shared::{At, Shared, Stretch};
 
+use crate::audio::role::Role;
 use crate::audio::seat::Seat;
+use crate::audio::shared::{Shared, Stretch};
 use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
 use crate::prepared::overlay::TileCells;
-use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
+use asperity_dsp::hertz::FORCE_HISTORY;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction};
 use between::Between;
-use blows::Blows;
-use drag::Drag;
+use coupling::AcCoupling;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
 use profile::Along;
 use rolling::Rolling;
-use skin::ContactSkin;
-use tip::Tip;
-use watching::Done;
+use skin::{ContactSkin, Drag};
+use tap::Tip;
 
-/// State of the sound and feel of a voice.
+/// State of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
-    /// Unused.
     Free,
-    /// Touching.
     Sounding,
     /// Going silent within `left` samples.
-    Fading { left: u32 },
+    Fading {
+        left: u32,
+    },
 }
 
 /// One contact.
@@ -86,12 +74,10 @@ pub(crate) struct Voice {
     slot: usize,
     asleep: bool,
     last_row: PadSample,
-    /// Reaction of the surface.
     reaction: Reaction,
     /// Sent to the body since the last row that was shown, N·s.
     unshown_n_s: f64,
     path: Path,
-    /// Place in the micro-relief.
     cells: TileCells,
     between: Between,
     rolling: Rolling,
@@ -101,7 +87,6 @@ pub(crate) struct Voice {
     ac: AcCoupling,
     skin: ContactSkin,
     exciters: Exciters,
-    blows: Blows,
     fades: Fades,
 }
 
@@ -111,8 +96,7 @@ impl Voice {
         Self::idle(slot, shared, shared.sample_rate_hz)
     }
 
-    /// A small voice in the place of one that another thread renders; never rendered itself.
-    /// Allocates.
+    /// Stands for one that another thread renders; never rendered itself. Allocates.
     pub(crate) fn placeholder(shared: &Shared) -> Self {
         Self::idle(0, shared, 0.0)
     }
@@ -142,8 +126,7 @@ impl Voice {
             drag: Drag::idle(sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             skin: ContactSkin::default(),
-            exciters: Exciters::idle(slot as u64, sample_rate_hz),
-            blows: Blows::default(),
+            exciters: Exciters::idle(sample_rate_hz),
             fades: Fades::idle(sample_rate_hz),
         }
     }
@@ -203,8 +186,7 @@ impl Voice {
         pressing
     }
 
-    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it,
-    /// wherever the stretch ends.
+    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it.
     fn until_silent<'a>(&self, stretch: Stretch<'a>) -> Stretch<'a> {
         match self.phase {
             Phase::Fading { left } => Stretch { n: stretch.n.min(left as usize), ..stretch },
@@ -212,18 +194,16 @@ impl Voice {
         }
     }
 
-    /// Touches the surface, at the steps of the absolute grid and before its heights are sampled: a
-    /// surface that gives way answers within the same cell wherever it is cut into stretches. A
+    /// Touches the surface at the steps of the absolute grid, before its heights are sampled. A
     /// sleeping contact still touches, and wakes when the ground stirs.
-    fn touch(&mut self, Stretch { position, .. }: Stretch<'_>, seat: &mut Seat) {
-        if position.is_multiple_of(MAX_BLOCK as u64) {
-            self.reaction = seat.touch(&self.touch_at(position));
+    fn touch(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
+        if stretch.is_on_grid() {
+            self.reaction = seat.touch(&self.touch_at(stretch.position));
             self.asleep &= !self.reaction.stirs;
         }
     }
 
-    /// Updates what is slow, at the steps of the absolute grid. By itself, because most short
-    /// stretches have none.
+    /// Updates what is slow, at the steps of the absolute grid; most short stretches have none.
     #[inline(never)]
     fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, .. } = stretch;
@@ -268,30 +248,28 @@ impl Voice {
         let between = self.between.on_the_way(self.path.last.position_m);
         let along = Along { between, ..self.along(shared, position, slopes) };
         profile.run(seat, along, &points[..n], &mut self.cells);
-        self.rolling.run(position, shared.slow_step, &mut profile.surface, n, slopes);
+        self.rolling.run((position, shared.slow_step), &mut profile.surface, n, slopes);
     }
 
     /// Pad: heights and forces become rows.
     fn run_pad(&mut self, Stretch { shared, n, .. }: Stretch<'_>, scratch: &mut Scratch) {
         let Scratch { profile, bends, rows, out, .. } = scratch;
-        let ground = self.between.bend(shared, &profile.seen, n, bends).ground(n, bends);
+        let ground = self.between.ground(shared, &profile.short, n, bends);
+        let (heights_m, rows) = (&profile.surface.height_m[..n], &mut rows[..n]);
+        self.pad.run(heights_m, &profile.force_n[..n], ground, rows);
         if let Some(roughness) = profile.surface.roughness[..n].last() {
-            self.between.remember(*roughness);
+            self.between.roughness = *roughness;
         }
-        let rows = &mut rows[..n];
-        self.pad.run(&profile.surface.height_m[..n], &profile.force_n[..n], ground, rows);
-        out.resets = self.pad.settle(shared.probe(self.role.probe).waits, rows);
-        out.blows = self.blows.count(rows);
+        self.pad.settle(shared.probe(self.role.probe).waits, rows, &mut out.counts);
     }
 
     /// Coupling: the pad's motion becomes what is felt, the contact force what is heard.
     fn couple(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, n } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, profile, force, out, .. } = scratch;
+        let Scratch { points, rows, profile, force_n_s, out, .. } = scratch;
         let sounds = slot.surface.excitation.has(Exciter::Force);
-        let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
-        let heard = ForceCoupling { high_pass: &slot.stroking.force_high_pass, step_s };
+        let heard = (&slot.stroking.force_high_pass, if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 });
         let dragged = output.quantity() == Quantity::Tangential;
         let mut felt = &rows[..n];
         if dragged {
@@ -302,7 +280,8 @@ impl Voice {
             }
             felt = rows;
         }
-        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        let impulse_n_s = &mut force_n_s[FORCE_HISTORY..][..n];
+        self.ac.run(output, heard, felt, &mut out.haptic[..n], impulse_n_s);
         if !dragged {
             self.skin.pass(position, shared.slow_step, &mut out.haptic[..n]);
         }
@@ -313,38 +292,15 @@ impl Voice {
     fn excite(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Stretch { shared, position, n, .. } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, force, out, .. } = scratch;
+        let Scratch { points, rows, force_n_s, out, .. } = scratch;
         let (points, rows) = (&points[..n], &rows[..n]);
         let (slow_step, sample_rate_hz) = (shared.slow_step, shared.sample_rate_hz);
         let (probe, reaction) = (shared.probe(self.role.probe), self.reaction);
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
-        self.exciters.run(&by, rows, force, out);
+        self.exciters.run(&by, rows, force_n_s, out);
         self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
-        self.exciters.rub(&by, points, rows, out);
+        self.exciters.rub(slot, points, rows, &mut out.rub);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
-    }
-
-    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and
-    /// not where it fades.
-    fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
-        if !tap.is_watching() || self.left_behind {
-            return;
-        }
-        let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, profile, shown, out, .. } = scratch;
-        let done = Done {
-            contact: self.contact,
-            role: &self.role,
-            begun: self.begun,
-            last_point: self.path.last,
-            size_m: [slot.surface.width_m, slot.surface.height_m],
-            asleep: self.asleep,
-            points,
-            profile,
-            rows,
-            impulse_n_s: &out.impulse_n_s,
-        };
-        shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
     }
 
     /// State in which the stretch leaves the contact.

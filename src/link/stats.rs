@@ -1,6 +1,7 @@
 //! Statistics of both halves, readable from the game thread at any moment.
 
 use crate::model::bus::BusLevels;
+use std::ops::AddAssign;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
 macro_rules! counters {
@@ -125,7 +126,36 @@ counters! {
     contacts,
 }
 
+/// Counts of a contact in a stretch.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Counts {
+    pub(crate) collisions: u64,
+    /// Collisions that would have lasted longer.
+    pub(crate) shortened: u64,
+    /// States that were no longer finite and begun anew.
+    pub(crate) resets: u64,
+    /// Contact forces beyond thirty times what pressed.
+    pub(crate) blows: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, more: Self) {
+        self.collisions += more.collisions;
+        self.shortened += more.shortened;
+        self.resets += more.resets;
+        self.blows += more.blows;
+    }
+}
+
 impl Counters {
+    /// Adds what contacts have counted.
+    pub(crate) fn count(&self, Counts { collisions, shortened, resets, blows }: Counts) {
+        Self::add(&self.micro_collisions, collisions);
+        Self::add(&self.shortened_collisions, shortened);
+        Self::add(&self.quarantined, resets);
+        Self::add(&self.blows, blows);
+    }
+
     pub(crate) fn add(cell: &AtomicU64, count: u64) {
         // Each cell has a single writer, so a plain read-modify-write loses nothing; it is atomic
         // so that readers never see half a number.

@@ -4,6 +4,7 @@
 
 use crate::model::event::{Actuator, ContactId};
 use asperity_dsp::micro_contact::ContactSample as PadSample;
+use asperity_texture::height_field::MAX_BLOCK;
 
 /// One contact during up to [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) consecutive
 /// samples; all slices are equally long and describe the same instants.
@@ -30,6 +31,53 @@ pub struct ContactBlock<'a> {
     /// Largest force of the device behind the surface, N; infinite where none is given. `force_n`
     /// keeps to it, and what is made of it has to.
     pub cap_n: &'a [f64],
+}
+
+/// Memory of a [`ContactBlock`].
+pub(crate) struct ContactRows {
+    pub(crate) position_m: [[f64; 2]; MAX_BLOCK],
+    pub(crate) uv: [[f64; 2]; MAX_BLOCK],
+    pub(crate) velocity_m_s: [[f64; 2]; MAX_BLOCK],
+    pub(crate) contact_samples: [PadSample; MAX_BLOCK],
+    pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    pub(crate) force_n: [[f64; 3]; MAX_BLOCK],
+    pub(crate) cap_n: [f64; MAX_BLOCK],
+}
+
+impl ContactRows {
+    pub(crate) fn new() -> Self {
+        Self {
+            position_m: [[0.0; 2]; MAX_BLOCK],
+            uv: [[0.0; 2]; MAX_BLOCK],
+            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
+            contact_samples: [PadSample::default(); MAX_BLOCK],
+            impulse_n_s: [0.0; MAX_BLOCK],
+            force_n: [[0.0; 3]; MAX_BLOCK],
+            cap_n: [0.0; MAX_BLOCK],
+        }
+    }
+
+    /// The first `count` rows, of which the first is that of sample `first_sample`.
+    pub(crate) fn block(
+        &self,
+        contact: ContactId,
+        actuator: Option<Actuator>,
+        first_sample: u64,
+        count: usize,
+    ) -> ContactBlock<'_> {
+        ContactBlock {
+            first_sample,
+            contact,
+            actuator,
+            position_m: &self.position_m[..count],
+            uv: &self.uv[..count],
+            velocity_m_s: &self.velocity_m_s[..count],
+            contact_samples: &self.contact_samples[..count],
+            impulse_n_s: &self.impulse_n_s[..count],
+            force_n: &self.force_n[..count],
+            cap_n: &self.cap_n[..count],
+        }
+    }
 }
 
 /// Receives what contacts do.

@@ -45,6 +45,17 @@ impl<T: Copy + Default> ImpulseRing<T> {
         self.busy_until = self.busy_until.max(end);
     }
 
+    /// Takes the values from `position` on.
+    pub(crate) fn take_into(&mut self, position: u64, out: &mut [T]) {
+        let at = position as usize & (self.values.len() - 1);
+        let (first, rest) = out.split_at_mut(out.len().min(self.values.len() - at));
+        for (out, from) in [(first, at), (rest, 0)] {
+            let values = &mut self.values[from..from + out.len()];
+            out.copy_from_slice(values);
+            values.fill(T::default());
+        }
+    }
+
     /// Takes the next values, from `position` on, in order.
     pub(crate) fn drain(&mut self, position: u64) -> impl FnMut() -> T {
         let mask = self.values.len() - 1;

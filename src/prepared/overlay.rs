@@ -59,26 +59,38 @@ const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 pub(crate) struct Room {
     shares: [f64; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; 2],
+    way_m: [[f64; 2]; MAX_BLOCK],
     lap: Lap,
 }
 
-/// The short waves of the micro-noise, at samples and between each and the sample before.
-pub(crate) struct NoiseBetween<'a> {
+/// Places between samples, as shares of the way from the sample before each: midway, at the first
+/// quarter, at the third.
+const WAYS: [f64; 3] = [0.5, 0.25, 0.75];
+
+/// Request for the short waves of the micro-noise between samples.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OnTheWay {
     /// The coarsest octave that counts among them.
     pub(crate) octave: usize,
-    /// Between samples.
-    pub(crate) looks: [Option<Look<'a>>; 3],
-    /// At the samples, m.
-    pub(crate) at_m: &'a mut [f64],
-    /// True where the surface told.
-    pub(crate) seen: &'a mut bool,
+    /// At the quarters too, and not midway only.
+    pub(crate) quarters: bool,
+    /// Place before the first sample.
+    pub(crate) from_m: [f64; 2],
 }
 
-/// Some share of the way from the sample before each.
-pub(crate) struct Look<'a> {
-    pub(crate) position_m: &'a [[f64; 2]],
-    /// Heights that are there, m.
-    pub(crate) height_m: &'a mut [f64],
+/// The short waves of the micro-noise, m.
+pub(crate) struct ShortWaves {
+    pub(crate) at_m: [f64; MAX_BLOCK],
+    /// Between the sample before and each, midway and at the quarters.
+    pub(crate) between_m: [[f64; MAX_BLOCK]; WAYS.len()],
+    /// False where the surface could not tell, as while it becomes another.
+    pub(crate) known: bool,
+}
+
+impl ShortWaves {
+    pub(crate) const fn new() -> Self {
+        Self { at_m: [0.0; MAX_BLOCK], between_m: [[0.0; MAX_BLOCK]; WAYS.len()], known: false }
+    }
 }
 
 /// A path over the surface, and what is known of all of it.
@@ -118,7 +130,7 @@ impl Room {
             gains: [[[1.0; 2]; 2]; MAX_BLOCK],
             parts_m: [none; MOST_SETS],
         };
-        Self { shares: none, parts_m: [none; 2], lap }
+        Self { shares: none, parts_m: [none; 2], way_m: [[0.0; 2]; MAX_BLOCK], lap }
     }
 }
 
@@ -168,27 +180,35 @@ impl Overlay {
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
-        between: Option<&mut NoiseBetween<'_>>,
+        between: Option<(OnTheWay, &mut ShortWaves)>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let Room { shares, parts_m, lap } = own;
+        let Room { shares, parts_m, way_m, lap } = own;
         let [along_u, along_v] = &self.axes;
         lap.begin_m =
             [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
-        let short = between.map(|between| {
-            let weights = self.short_waves().from_octave(between.octave);
-            for look in between.looks.iter_mut().flatten() {
-                let there = NoisePath { position_m: look.position_m, ..*path };
-                look.height_m.fill(0.0);
-                let into_m = [&mut *look.height_m];
-                self.add_tile(field, &there, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+        let n = height_m.len().min(MAX_BLOCK);
+        let short = between.map(|(OnTheWay { octave, quarters, from_m }, short)| {
+            let weights = self.short_waves().from_octave(octave);
+            let looks = if quarters { WAYS.len() } else { 1 };
+            for (share, part_m) in WAYS.into_iter().zip(&mut short.between_m).take(looks) {
+                let mut before_m = from_m;
+                for ([x, y], at_m) in way_m.iter_mut().zip(path.position_m) {
+                    *x = before_m[0] + share * (at_m[0] - before_m[0]);
+                    *y = before_m[1] + share * (at_m[1] - before_m[1]);
+                    before_m = *at_m;
+                }
+                let there = NoisePath { position_m: &way_m[..n], ..*path };
+                let part_m = &mut part_m[..n];
+                part_m.fill(0.0);
+                self.add_tile(field, &there, roughness, &[&weights], [part_m], (&mut *cells, &mut *lap));
             }
-            between.at_m.fill(0.0);
-            *between.seen = true;
-            (weights, &mut *between.at_m)
+            short.known = true;
+            let at_m = &mut short.at_m[..n];
+            at_m.fill(0.0);
+            (weights, at_m)
         });
         let cells = (cells, lap);
-        let n = height_m.len().min(MAX_BLOCK);
         let shares = &mut shares[..if share.is_none() { n } else { 0 }];
         for (share, power_m2) in shares.iter_mut().zip(*power_m2) {
             *share = room(*power_m2, self.ordinary_m);

@@ -270,6 +270,7 @@ pub fn hollow_m(
         first_sample: touch.sample,
         contact: touch.contact,
         heights_only: true,
+        bare: true,
         tip_radius_m,
         ..PathBlock::default()
     };

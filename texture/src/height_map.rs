@@ -15,7 +15,6 @@
 //! period, the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid
 //! as well, so that a seamless map has no seam.
 
-mod blend;
 mod extent;
 mod sampling;
 
@@ -29,10 +28,9 @@ use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
 use crate::ridden::ridden;
-use crate::spline::{Places, Samples, Spline};
+use crate::spline::{Spline, Working};
 use crate::wrap::Wrap;
 use asperity_dsp::DesignError;
-use blend::Blend;
 use extent::check;
 use std::sync::Arc;
 
@@ -206,20 +204,24 @@ impl Pyramid {
         &self,
         path: &PathBlock<'_>,
         (widest_m, bounds_m): (f64, Option<&[[f64; 2]; 2]>),
-        places: &mut Places,
-        out: &mut Samples,
+        working: &mut Working,
     ) {
-        let Some(finest) = self.levels.first() else { return out.fill::<SLOPES>(self.constant) };
+        let Working { places, samples, .. } = working;
+        let Some(finest) = self.levels.first() else { return samples.fill::<SLOPES>(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
-            return finest.sample_block::<SLOPES>(path.position_m, bounds_m, places, out);
+            return finest.sample_block::<SLOPES>(path.position_m, bounds_m, places, samples);
         }
-        self.sample_blurred::<SLOPES>(finest, path, out);
+        self.sample_blurred::<SLOPES>(finest, path, working);
     }
 
     /// Fills where some footprint is wider than a texel.
     #[inline(never)]
-    fn sample_blurred<const SLOPES: bool>(&self, finest: &Spline, path: &PathBlock<'_>, out: &mut Samples) {
-        let mut between = Blend::new();
+    fn sample_blurred<const SLOPES: bool>(
+        &self,
+        finest: &Spline,
+        path: &PathBlock<'_>,
+        working: &mut Working,
+    ) {
         let mut blur = [(0, 0.0); MAX_BLOCK];
         for (n, blur) in blur[..path.len()].iter_mut().enumerate() {
             *blur = self.blur(finest, path.velocity_m_s[n], path.footprint_m[n]);
@@ -230,9 +232,10 @@ impl Pyramid {
             let same = blur[start..path.len()].iter().take_while(|blur| blur.0 == level).count();
             let run = start..start + same;
             let (position_m, blur) = (&path.position_m[run.clone()], &blur[run]);
-            self.blend_block::<SLOPES>(level, position_m, blur, start, out, &mut between);
+            self.blend_block::<SLOPES>(level, position_m, blur, start, working);
             start += same;
         }
+        working.places.forget();
     }
 
     /// The level that a footprint asks for, and how much of the next one is blended in.
@@ -257,8 +260,7 @@ impl Pyramid {
         position_m: &[[f64; 2]],
         blur: &[(usize, f64)],
         start: usize,
-        out: &mut Samples,
-        Blend { places, finer, coarser }: &mut Blend,
+        Working { places, samples: out, levels: [finer, coarser] }: &mut Working,
     ) {
         places.forget();
         self.levels[level].sample_block::<SLOPES>(position_m, None, places, finer);

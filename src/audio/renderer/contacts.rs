@@ -1,7 +1,9 @@
 //! Contacts come, go on, are stolen, revived and let go.
 
 use super::Renderer;
-use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Stretch, Voice};
+use crate::audio::role::Role;
+use crate::audio::shared::Stretch;
+use crate::audio::voice::{EMPTY_FORCE_N, Phase, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis, MAX_FORCE_N};
 use crate::model::stamp::Stamp;

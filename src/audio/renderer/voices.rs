@@ -7,8 +7,9 @@ use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::seat::Seat;
-use crate::audio::voice::{At, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
-use crate::link::stats::Counters;
+use crate::audio::shared::{At, Shared, Stretch};
+use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
+use crate::link::stats::{Counters, Counts};
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
@@ -24,10 +25,7 @@ struct Gathering<'a> {
     channels: &'a mut [HapticChannel],
     bodies: &'a mut [BodySeat],
     placed: &'a [Option<StrikePlace>],
-    collisions: u64,
-    shortened: u64,
-    resets: u64,
-    blows: u64,
+    counts: Counts,
     crowded: u64,
 }
 
@@ -35,10 +33,7 @@ impl Gathering<'_> {
     /// Adds one voice's stretch to its channel and sends the rest to the bodies.
     fn add(&mut self, index: usize, voice: &Voice, seat: &Seat, pressing: Option<Probe>, out: &VoiceBlock) {
         let n = self.at.n;
-        self.collisions += out.collisions;
-        self.shortened += out.shortened;
-        self.resets += out.resets;
-        self.blows += out.blows;
+        self.counts += out.counts;
         if let Some(channel) = voice.role.actuator {
             self.channels[channel].add(&out.haptic[..n]);
         }
@@ -95,10 +90,7 @@ impl Gathering<'_> {
     }
 
     fn count(&self, counters: &Counters) {
-        Counters::add(&counters.micro_collisions, self.collisions);
-        Counters::add(&counters.shortened_collisions, self.shortened);
-        Counters::add(&counters.quarantined, self.resets);
-        Counters::add(&counters.blows, self.blows);
+        counters.count(self.counts);
         Counters::add(&counters.rubs_crowded_out, self.crowded);
     }
 }
@@ -120,10 +112,7 @@ impl Renderer {
             channels: &mut self.channels,
             bodies: &mut self.bodies,
             placed: &self.placed,
-            collisions: 0,
-            shortened: 0,
-            resets: 0,
-            blows: 0,
+            counts: Counts::default(),
             crowded: 0,
         };
         let shared = &*self.shared;

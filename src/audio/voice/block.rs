@@ -1,58 +1,82 @@
-//! Outputs of a voice: what is felt of it, what it sends to the body, what was counted.
+//! Memory of a stretch: the signals between the stages, and what leaves a voice.
 
-use super::rub_block::RubBlock;
+use super::profile::Profile;
+use super::{PadSample, PathPoint};
+use crate::link::stats::Counts;
+use crate::link::tap::ContactRows;
+use asperity_dsp::hertz::FORCE_HISTORY;
+use asperity_dsp::micro_contact::Bend;
 use asperity_texture::height_field::MAX_BLOCK;
+use std::ops::Range;
 
-/// Outputs of one voice in a stretch of samples.
+/// Outputs of the stages, in their order; one for all voices.
+pub(crate) struct Scratch {
+    pub(super) points: [PathPoint; MAX_BLOCK],
+    pub(super) profile: Profile,
+    pub(super) bends: [[Bend; 2]; MAX_BLOCK],
+    pub(super) rows: [PadSample; MAX_BLOCK],
+    /// Impulses of the alternating force behind those of the stretch before, N·s.
+    pub(super) force_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
+    pub(super) shown: ContactRows,
+    /// Boxed: with several threads it changes hands, and is not copied.
+    pub(crate) out: Box<VoiceBlock>,
+}
+
+/// Outputs of one voice.
 pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
     /// Sent to the body, N·s.
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
-    /// Rubbing of the body by friction.
-    pub(crate) rub: RubBlock,
     /// True where `impulse_n_s` is more than zeros.
     pub(crate) excites: bool,
-    pub(crate) collisions: u64,
-    /// Contact forces beyond thirty times what pressed.
-    pub(crate) blows: u64,
-    /// Collisions that would have lasted longer.
-    pub(crate) shortened: u64,
-    pub(crate) resets: u64,
+    pub(crate) rub: RubBlock,
+    pub(crate) counts: Counts,
+}
+
+/// Rubbing of the body by friction.
+pub(crate) struct RubBlock {
+    pub(crate) rubs: bool,
+    /// Line of the motion: a unit vector of u and v.
+    pub(crate) along: [f64; 2],
+    pub(crate) sweep_m_s: [f64; MAX_BLOCK],
+    pub(crate) normal_force_n: [f64; MAX_BLOCK],
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Box<Self> {
+        Box::new(Self {
+            points: [PathPoint::default(); MAX_BLOCK],
+            profile: Profile::new(),
+            bends: [[[0.0; 4]; 2]; MAX_BLOCK],
+            rows: [PadSample::default(); MAX_BLOCK],
+            force_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
+            shown: ContactRows::new(),
+            out: Box::new(VoiceBlock::new()),
+        })
+    }
 }
 
 impl VoiceBlock {
-    /// Nothing.
+    /// Silence.
     pub(crate) fn new() -> Self {
-        Self {
-            haptic: [0.0; MAX_BLOCK],
-            impulse_n_s: [0.0; MAX_BLOCK],
-            rub: RubBlock::STILL,
-            excites: false,
-            collisions: 0,
-            blows: 0,
-            shortened: 0,
-            resets: 0,
-        }
+        let none = [0.0; MAX_BLOCK];
+        let rub = RubBlock { rubs: false, along: [1.0, 0.0], sweep_m_s: none, normal_force_n: none };
+        Self { haptic: none, impulse_n_s: none, excites: false, rub, counts: Counts::default() }
     }
 
-    /// Louder or softer, felt and heard; what rubs presses harder or less.
+    /// Begins a stretch whose samples from `silent` on stay silent.
+    pub(super) fn begin(&mut self, silent: Range<usize>) {
+        self.haptic[silent.clone()].fill(0.0);
+        self.impulse_n_s[silent.clone()].fill(0.0);
+        self.rub.normal_force_n[silent].fill(0.0);
+        self.rub.rubs = false;
+    }
+
+    /// Scales all that one sample gives.
     pub(super) fn scale(&mut self, i: usize, gain: f64) {
         self.haptic[i] *= gain;
         self.impulse_n_s[i] *= gain;
         self.rub.normal_force_n[i] *= gain;
-    }
-
-    /// A stretch begins of which some samples at its end stay silent.
-    pub(super) fn begin(&mut self, silent: std::ops::Range<usize>) {
-        self.silence(silent);
-        self.rub.rubs = false;
-    }
-
-    /// Nothing felt and nothing heard of some samples.
-    pub(super) fn silence(&mut self, samples: std::ops::Range<usize>) {
-        self.haptic[samples.clone()].fill(0.0);
-        self.impulse_n_s[samples.clone()].fill(0.0);
-        self.rub.normal_force_n[samples].fill(0.0);
     }
 }

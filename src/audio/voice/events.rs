@@ -1,14 +1,11 @@
 //! Contact events at a voice: it lands, appears, goes on, leaves.
 
-use super::between::{Between, Pressed};
-use super::blows::Blows;
 use super::profile::{Along, Profile};
-use super::scratch::Scratch;
-use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
-use super::tip::Tip;
-use super::{PadSample, PathPoint, Phase, Voice};
+use super::tap::Tip;
+use super::{PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
+use crate::audio::shared::{Shared, Stretch};
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
 use crate::prepared::surface::SurfaceSlot;
@@ -23,8 +20,7 @@ pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 /// Span that a contact that appears is taken to have slid, s: the memory of a 10 Hz high-pass.
 const TREND_S: f64 = 0.025;
 
-/// Time before it appears at which the pad leaves its straight line for the ground, s. The same at
-/// every rate, because a finger remembers for tenths of a second how it began.
+/// Time before it appears at which the pad leaves its straight line for the ground, s.
 const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
 /// Heights about the place where it does.
@@ -45,16 +41,12 @@ impl Voice {
         let Some(slot) = seat.current() else { return };
         let (shared, position) = (at.shared, at.position);
         let lands = sample.closing_m_s > 0.0;
-        self.contact = contact;
-        self.phase = Phase::Sounding;
+        (self.contact, self.phase) = (contact, Phase::Sounding);
         (self.begun, self.refreshed) = (position, position);
-        self.asleep = false;
-        self.ended = false;
-        self.left_behind = false;
-        self.empty_reports = 0;
-        self.unshown_n_s = 0.0;
+        (self.asleep, self.ended, self.left_behind) = (false, false, false);
+        (self.empty_reports, self.unshown_n_s) = (0, 0.0);
         self.fades.begin(self.role.gain, lands, shared);
-        self.between = Between::default();
+        self.between = Default::default();
         let force_n = self.path.begin(sample, slot, stamp);
         self.tip = Tip::begin(sample);
         self.rolling.tell(sample);
@@ -62,14 +54,14 @@ impl Voice {
         let ground = slot.stroking.ground;
         seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
-        self.drag.begin();
+        self.drag.begins = true;
         self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
             let along = self.along(shared, position, false);
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
-            self.between.remember(scratch.profile.surface.roughness[0]);
+            self.between.roughness = scratch.profile.surface.roughness[0];
             self.look_between(shared, seat);
             let Profile { surface, rough, .. } = &mut scratch.profile;
             self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
@@ -82,7 +74,6 @@ impl Voice {
         // The high-pass starts settled, so that beginning gives no step.
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
-        self.blows = Blows::default();
         self.skin = ContactSkin::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
@@ -95,18 +86,17 @@ impl Voice {
     fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
-        self.between.remember(scratch.profile.surface.roughness[MAX_BLOCK - 1]);
+        self.between.roughness = scratch.profile.surface.roughness[MAX_BLOCK - 1];
         self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
-        // It leaves the line where the ground is known about it: a step before, there, and a step
-        // later.
-        self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
+        // It leaves the line where the ground is known a step before, there, and a step later.
+        self.lay_behind((steps + 1, step_s, ABOUT), at, seat, scratch);
         let Profile { surface, rough, .. } = &mut scratch.profile;
         self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
         let Scratch { bends, profile, .. } = &mut *scratch;
         self.rolling.lead_in(&mut profile.surface, ABOUT);
-        self.between.bend(shared, &profile.seen, ABOUT, bends);
+        self.between.ground(shared, &profile.short, ABOUT, bends);
         let [before_m, here_m, later_m, ..] = profile.surface.height_m;
         let given = self.pad.ride([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
         // The line ends a step before the first height of the ground.
@@ -114,12 +104,13 @@ impl Voice {
         let (mut left, mut row) = (steps, PadSample::default());
         while left > 0 {
             let count = left.min(MAX_BLOCK);
-            self.lay_behind(left, step_s, count, at, seat, scratch);
+            self.lay_behind((left, step_s, count), at, seat, scratch);
             let Scratch { rows, bends, profile, .. } = &mut *scratch;
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            let ground = self.between.bend(shared, &profile.seen, count, bends).ground(count, bends);
-            row = self.pad.lead_in(heights_m, forces_n, ground, &mut rows[..count]);
+            let ground = self.between.ground(shared, &profile.short, count, bends);
+            self.pad.run(heights_m, forces_n, ground, &mut rows[..count]);
+            row = rows[..count].last().copied().unwrap_or_default();
             left -= count;
             if left == 0 {
                 self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
@@ -130,13 +121,10 @@ impl Voice {
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 
-    /// The profile under `count` points behind the contact, a step of `step_s` apart, of which the
-    /// first is `steps` behind.
+    /// The profile under `count` points behind the contact, of which the first is `steps` behind.
     fn lay_behind(
         &mut self,
-        steps: usize,
-        step_s: f64,
-        count: usize,
+        (steps, step_s, count): (usize, f64, usize),
         at: Stretch<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
@@ -151,38 +139,19 @@ impl Voice {
         profile.run(seat, along, points, &mut self.cells);
     }
 
-    /// Decides what of the ground is looked at between samples: when it begins, and at the steps of
-    /// the absolute sample grid.
-    pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
-        let probe = shared.probe(self.role.probe);
-        let plain = !self.path.is_in_body() && !self.rolling.rolls();
-        let (at, contact) = (&self.path.last, self.pad.probe());
-        self.between.decide(&Pressed { shared, at, probe, contact, plain }, seat);
-    }
-
-    /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`]: the parabola nearest
-    /// to it.
+    /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`].
     fn trend(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
         let step_s = TREND_S / MAX_BLOCK as f64;
-        self.lay_behind(MAX_BLOCK, step_s, MAX_BLOCK, at, seat, scratch);
+        self.lay_behind((MAX_BLOCK, step_s, MAX_BLOCK), at, seat, scratch);
         let [slope, bend] = parabola(&scratch.profile.surface.height_m);
         // The slope is that of the middle; the contact is half a trend later.
         let bend_m_s2 = bend / (step_s * step_s);
         [slope / step_s + bend_m_s2 * 0.5 * step_s * MAX_BLOCK as f64, bend_m_s2]
     }
 
-    /// Whose profile is asked for.
-    pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
-        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        let in_body = self.path.is_in_body();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, between: None }
-    }
-
-    /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing
-    /// here: it returns the path that begins where the contact now is, for another voice.
-    ///
-    /// `stamp` is when the event holds, which may lie before `position` when it arrives late:
-    /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
+    /// Follows a report; wakes a resting contact. A jump that no stroke makes changes nothing here:
+    /// it returns the path that begins where the contact now is, for another voice. `stamp` may lie
+    /// before `position` when the report is late: jitter of arrival does not become one of motion.
     pub(crate) fn moved(
         &mut self,
         sample: &ContactSample,
@@ -195,10 +164,9 @@ impl Voice {
         self.path.moved(sample, slot, stamp)
     }
 
-    /// Tests whether a landing is so close to where this contact fades that it is the same touch,
-    /// and no jump.
+    /// Tests whether a landing is so close to where this contact fades that it is the same touch.
     pub(crate) fn goes_on_at(&self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> bool {
-        self.path.is_near(sample, slot) && !self.path.would_jump(sample, slot, stamp)
+        self.path.goes_on_at(sample, slot, stamp)
     }
 
     /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls
@@ -229,10 +197,8 @@ impl Voice {
         self.path.succeed(path);
     }
 
-    /// The force to render for a report, or none if the contact has left the surface. Solvers
-    /// report a step without force now and then, and some every other step, from a finger that
-    /// never left: one such report holds the force before it, because a finger thrown off for a
-    /// sixtieth of a second is felt as a blow.
+    /// The force to render for a report, or none if the contact has left the surface. One report
+    /// without force holds the force before it: solvers make such from a finger that never left.
     pub(crate) fn pressed_n(&mut self, reported_n: f64) -> Option<f64> {
         if reported_n > EMPTY_FORCE_N {
             self.empty_reports = 0;

@@ -1,23 +1,22 @@
-//! Fades of a contact that comes or goes, without a click.
+//! Fades: raised cosines, in for a contact that was suddenly there (a landing has its own
+//! beginning), out for one that ended, lapsed or was stolen.
 
 use super::Phase;
 use super::block::VoiceBlock;
-use super::shared::Shared;
+use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
 
 /// Share of a fade's length that its turning takes.
 const TURN: f64 = 0.2;
 
-/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so
-/// that the gain has no corner.
-pub(super) struct Rising {
+/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back.
+struct Rising {
     phase: f64,
     /// Per sample.
     speed: f64,
 }
 
 impl Rising {
-    /// The next gain.
     fn tick(&mut self, fade_samples: u32) -> f64 {
         let top = 1.0 / f64::from(fade_samples);
         self.speed = (self.speed + 2.0 * top * top / TURN).min(top);
@@ -38,20 +37,18 @@ pub(super) struct Fades {
 }
 
 impl Fades {
-    /// State of an unused voice.
     pub(super) fn idle(sample_rate_hz: f64) -> Self {
         Self { in_left: 0, rising: None, gain: 0.0, role_gain: Smoothed::new(sample_rate_hz) }
     }
 
-    /// Another contact begins. A landing has its own beginning; what is suddenly there fades in.
+    /// Another contact begins.
     pub(super) fn begin(&mut self, role_gain: f64, lands: bool, shared: &Shared) {
         self.rising = None;
         self.role_gain.set(role_gain);
         self.in_left = if lands { 0 } else { shared.fade_samples() };
     }
 
-    /// Comes back out of a fade that stands at `phase`, from the level it has faded to and without
-    /// a corner.
+    /// Comes back out of a fade that stands at `phase`, from the level it has faded to.
     pub(super) fn resume(&mut self, phase: Phase, shared: &Shared) {
         let step = 1.0 / f64::from(shared.fade_samples());
         // Before the first faded sample nothing has happened yet.
@@ -63,9 +60,7 @@ impl Fades {
         }
     }
 
-    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing
-    /// has its own beginning), out for one that ended, lapsed or was stolen. The phase after `n`
-    /// samples.
+    /// Fades `n` samples; the phase after them.
     pub(super) fn run(
         &mut self,
         mut phase: Phase,

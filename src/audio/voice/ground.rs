@@ -1,40 +1,33 @@
-//! Ground: what a contact asks of its surface beside the profile, and what it presses on it.
+//! Ground: what a contact asks of its surface beside the profile, and what it presses on it; where
+//! nothing of it moves or sounds it falls asleep, and costs nothing until something stirs.
 
-use super::events::EMPTY_FORCE_N;
-use super::rolling::{RolledOver, Rolling};
-use super::shared::{Shared, Stretch};
-use super::{Phase, Voice};
+use super::profile::Along;
+use super::rolling::Rolling;
+use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
+use crate::audio::shared::{Shared, Stretch};
 use crate::prepared::area::{loudness, nestling};
+use crate::prepared::rolled_over::RolledOver;
 use crate::prepared::stiffness::stiffness_n_m;
-use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock, Touch, TouchKind};
+use asperity_texture::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
-    /// Probe that presses on the touched body from here on; none within a cell of the absolute
-    /// grid, where nobody asks. Before a stretch is rendered: how it presses at the end of one
-    /// would depend on where the blocks are cut.
+    /// Probe that presses on the touched body from a step of the absolute grid on, as stiff as
+    /// ground and force make it, to a quarter of an octave; none while nothing presses.
     pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
-        let on_grid = stretch.position.is_multiple_of(MAX_BLOCK as u64);
-        seat.current().filter(|_| on_grid).and_then(|slot| self.pressing(stretch.shared, slot))
-    }
-
-    /// Probe that presses on the touched body, as stiff as its ground and the force make it, to a
-    /// quarter of an octave. None while nothing presses.
-    fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {
         let force_n = self.path.last.normal_force_n;
-        if self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
+        if !stretch.is_on_grid() || self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
             return None;
         }
-        let probe = shared.probe(self.role.probe).micro_contact.probe();
+        let slot = seat.current()?;
+        let probe = stretch.shared.probe(self.role.probe).micro_contact.probe();
         let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
         let contact_stiffness_n_m = libm::exp2((4.0 * libm::log2(stiffness_n_m)).round() / 4.0);
         Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
-    /// Loudness of the contact: the harder it is pressed and the closer it nestles to the ground,
-    /// the more of it sounds.
+    /// Loudness: grows with force and with how closely the tip nestles to the ground.
     pub(super) fn loudness(
         &self,
         shared: &Shared,
@@ -48,7 +41,7 @@ impl Voice {
         loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
     }
 
-    /// Over what it rolls at its last sample, to whoever minds.
+    /// Hands the ground under its last sample to what rolls.
     pub(super) fn roll(
         &mut self,
         shared: &Shared,
@@ -58,25 +51,64 @@ impl Voice {
     ) {
         let source_power_m2 = seat.power_m2(&self.touch_at(0), room);
         let Some(slot) = seat.current() else { return };
-        let over = RolledOver {
-            slot,
-            source_power_m2,
-            probe: shared.probe(self.role.probe).micro_contact.probe(),
-            at: &self.path.last,
-            sample_rate_hz: shared.sample_rate_hz,
-        };
-        then(&mut self.rolling, over);
+        let probe = shared.probe(self.role.probe).micro_contact.probe();
+        let (at, sample_rate_hz) = (&self.path.last, shared.sample_rate_hz);
+        then(&mut self.rolling, RolledOver { slot, source_power_m2, probe, at, sample_rate_hz });
     }
 
-    /// Pressing of the contact at its last sample.
+    /// Decides what of the ground is sampled between samples: as it begins, and on the grid.
+    pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
+        if self.path.is_in_body() || self.rolling.rolls() {
+            return self.between.leave();
+        }
+        let probe = shared.probe(self.role.probe);
+        self.between.decide(shared, seat, probe, self.pad.probe(), &self.path.last);
+    }
+
+    /// Request for its profile.
+    pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
+        let (contact, first_sample) = (self.slot, position);
+        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let block = PathBlock { contact, first_sample, slopes, tip_radius_m, ..PathBlock::default() };
+        Along { shared, block, in_body: self.path.is_in_body(), between: None }
+    }
+
+    /// Touch at its last sample.
     pub(super) fn touch_at(&self, position: u64) -> Touch {
-        Touch {
-            kind: TouchKind::Presses,
-            contact: self.slot,
-            sample: position,
-            position_m: self.path.last.position_m,
-            velocity_m_s: self.path.last.velocity_m_s,
-            normal_force_n: self.path.last.normal_force_n,
+        let PathPoint { position_m, velocity_m_s, normal_force_n } = self.path.last;
+        let (kind, contact, sample) = (TouchKind::Presses, self.slot, position);
+        Touch { kind, contact, sample, position_m, velocity_m_s, normal_force_n }
+    }
+
+    /// A resting contact: the rows stay as they were.
+    pub(super) fn rest(&self, n: usize, scratch: &mut Scratch) {
+        scratch.points[..n].fill(self.path.last);
+        scratch.rows[..n].fill(self.last_row);
+        let out = &mut scratch.out;
+        out.haptic[..n].fill(self.ac.last_felt);
+        out.impulse_n_s[..n].fill(0.0);
+        (out.excites, out.counts) = (false, Default::default());
+    }
+
+    /// Falls asleep where nothing of it moves or sounds any more; called at the ends of grid cells.
+    pub(super) fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
+        let Stretch { output, position, n, .. } = stretch;
+        let row = PadSample { onset: None, ..scratch.rows[n - 1] };
+        self.last_row = row;
+        if self.asleep {
+            return;
+        }
+        self.asleep = self.ac.feels_still(output, row.pad_m)
+            && self.path.is_still()
+            && self.skin.is_still()
+            && self.pad.is_settled(&row)
+            && self.reaction.grain_rate_per_s == 0.0
+            && !self.reaction.stirs
+            && !scratch.out.rub.rubs
+            && self.exciters.are_still(scratch.out.impulse_n_s[n - 1], position + n as u64);
+        if self.asleep {
+            self.ac.settle(output);
+            self.exciters.settle();
         }
     }
 }

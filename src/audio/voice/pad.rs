@@ -1,16 +1,18 @@
-//! Pad: the micro-contact of one voice (`dsp::micro_contact`), as stiff as what presses makes it,
-//! one row a sample.
-//!
-//! Heights and forces in, [rows](PadSample) out. The stiffness follows the reported force, smoothed
-//! as the path is, at the steps of the absolute sample grid, so that it depends on no split into
-//! blocks.
+//! Pad: the micro-contact (`dsp::micro_contact`), as stiff as what presses makes it. Heights and
+//! forces in, one [row](PadSample) a sample out.
 
 use super::PadSample;
+use crate::link::stats::Counts;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
 use asperity_dsp::micro_contact::{ContactState, GroundBetween, MicroContact, Probe};
 
-/// A contact force so many times what presses is a blow: no contact begins in the middle of one.
+/// A contact force so many times what presses is a blow: a heavy or stiff probe comes down from a
+/// crest with v √(k m), whatever presses it. Fingertips reach 13 on ordinary ribs.
+const BLOW: f64 = 30.0;
+/// Less than this is no touch but a contact that fades, N.
+const LIGHTEST_N: f64 = 0.01;
+/// Contact force over what presses at which no contact appears: it would begin in a blow.
 const LEAD_IN_BLOW: f64 = 10.0;
 
 /// The pad of one contact.
@@ -18,17 +20,19 @@ pub(super) struct Pad {
     /// As stiff as what presses makes it.
     model: Box<MicroContact>,
     state: ContactState,
-    /// Ground and force that the stiffness was worked out for.
+    /// Force and ground that the stiffness was worked out for.
     stiff_for: Option<(f64, Ground)>,
     /// The row that waits, where rows have to.
     late_row: PadSample,
     /// Closing speed while it is still in the air, m/s; 0 once it has touched.
     landing_m_s: f64,
     resets_told: u32,
+    /// True where a blow was under way at the last row.
+    in_blow: bool,
 }
 
 impl Pad {
-    /// State of an unused voice. Allocates the model.
+    /// Allocates the model.
     pub(super) fn idle(probe: &PreparedProbe) -> Self {
         Self {
             model: Box::new(probe.micro_contact),
@@ -37,28 +41,27 @@ impl Pad {
             late_row: PadSample::default(),
             landing_m_s: 0.0,
             resets_told: 0,
+            in_blow: false,
         }
     }
 
-    /// The contact becomes as stiff as probe, ground and force make it.
+    /// Sets the stiffness that probe, ground and force make: at the steps of the absolute grid.
     pub(super) fn stiffen(&mut self, probe: &PreparedProbe, ground: Ground, force_n: f64) {
         let now = (force_n, ground);
-        if self.stiff_for == Some(now) {
-            return;
+        if self.stiff_for != Some(now) {
+            self.stiff_for = Some(now);
+            let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &ground, force_n);
+            probe.ladder.set(&mut self.model, stiffness_n_m);
         }
-        self.stiff_for = Some(now);
-        let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &now.1, force_n);
-        probe.ladder.set(&mut self.model, stiffness_n_m);
     }
 
-    /// Another contact begins, on this ground and pressed like this.
+    /// Another contact begins.
     pub(super) fn begin(&mut self, probe: &PreparedProbe, ground: Ground, force_n: f64) {
-        self.stiff_for = None;
-        self.landing_m_s = 0.0;
+        (self.stiff_for, self.landing_m_s, self.in_blow) = (None, 0.0, false);
         self.stiffen(probe, ground, force_n);
     }
 
-    /// It comes down and touches `later` samples after the stretch that follows begins.
+    /// Comes down and touches `later` samples after the stretch that follows begins.
     pub(super) fn land(&mut self, height_m: f64, force_n: f64, closing_m_s: f64, later: f64) {
         self.landing_m_s = closing_m_s;
         self.state = self.model.landing_later(height_m, force_n, closing_m_s, later);
@@ -67,34 +70,15 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// It has been sliding for a while already, over ground of this height that rises by `rise_m_s`
-    /// on the whole.
-    ///
-    /// Finger and pad rise with it: set off from rest they would still swing when they are heard.
-    /// On the whole means over the time that a finger answers in: with the slope of a millisecond's
-    /// roughness a lightly pressed one would be thrown.
-    ///
-    /// The heights are those a sample before it leaves that line, there, and a sample later; how
-    /// many of the heights after the middle one it has been given.
+    /// Has been sliding along a line that rises by `rise_m_s`, finger and pad with it: set off from
+    /// rest they would still swing when they are felt. The heights are those a sample before it
+    /// leaves the line, there, and a sample later; returns how many after the middle it has got.
     pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
         self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
         self.model.latency_samples()
     }
 
-    /// Then over these heights; the row it ends with.
-    pub(super) fn lead_in(
-        &mut self,
-        heights_m: &[f64],
-        forces_n: &[f64],
-        ground: GroundBetween<'_>,
-        rows: &mut [PadSample],
-    ) -> PadSample {
-        self.model.run_over(&mut self.state, heights_m, forces_n, ground, rows);
-        rows.last().copied().unwrap_or_default()
-    }
-
-    /// And is here, after such a row, on ground of this height that rises by `rise_m_s` on the
-    /// whole.
+    /// Appears after such a row, on ground of this height that rises by `rise_m_s` on the whole.
     pub(super) fn appear(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
         self.late_row = PadSample { onset: None, ..*row };
         if self.state.resets() > 0 || row.contact_force_n > LEAD_IN_BLOW * force_n {
@@ -104,7 +88,7 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// A row for each height, as the model gives it, over what is known of the ground between them.
+    /// A row for each height, as the model gives it.
     pub(super) fn run(
         &mut self,
         heights_m: &[f64],
@@ -115,32 +99,31 @@ impl Pad {
         self.model.run_over(&mut self.state, heights_m, forces_n, ground, rows);
     }
 
-    /// The contact as stiff as it is.
+    /// The probe as stiff as it is.
     pub(super) fn probe(&self) -> &Probe {
         self.model.probe()
     }
 
-    /// Rows of the model as they are felt; how often the state was no longer finite and begun anew.
-    pub(super) fn settle(&mut self, waits: bool, rows: &mut [PadSample]) -> u64 {
+    /// Rows of the model as they are felt, and what is counted. Rows that wait come a sample later,
+    /// so that those of every probe describe the same instant.
+    pub(super) fn settle(&mut self, waits: bool, rows: &mut [PadSample], counts: &mut Counts) {
         if waits {
-            self.wait_a_row(rows);
+            rows.iter_mut().for_each(|row| std::mem::swap(row, &mut self.late_row));
         }
         if self.landing_m_s > 0.0 {
             self.feel_no_air(rows);
         }
         let resets = self.state.resets();
-        u64::from(resets.wrapping_sub(std::mem::replace(&mut self.resets_told, resets)))
-    }
-
-    /// Rows come a sample later, so that those of every probe describe the same instant.
-    fn wait_a_row(&mut self, rows: &mut [PadSample]) {
+        counts.resets = u64::from(resets.wrapping_sub(std::mem::replace(&mut self.resets_told, resets)));
+        counts.blows = 0;
         for row in rows {
-            std::mem::swap(row, &mut self.late_row);
+            let in_blow = row.contact_force_n > BLOW * row.normal_force_n.max(LIGHTEST_N);
+            counts.blows += u64::from(in_blow && !self.in_blow);
+            self.in_blow = in_blow;
         }
     }
 
-    /// Until it touches, a pad that comes down is as far as the surface: nothing is felt of its way
-    /// through the air.
+    /// Nothing is felt of the way through the air: until it touches, a pad is at the surface.
     fn feel_no_air(&mut self, rows: &mut [PadSample]) {
         for row in rows {
             if row.onset.is_some() || row.pad_m < row.height_m {

@@ -1,27 +1,19 @@
 //! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard
 //! (`dsp::rolling`).
 //!
-//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion
-//! is slip, and what ground lies there, is worked out at the steps of the absolute sample grid;
-//! between two of them the share goes along a straight line. A contact whose reports tell no slip
-//! slides, and its heights stay what they are to the bit.
+//! Heights in, heights out, and before the body impulses in, impulses out. The share of rolling
+//! goes along a straight line between two steps of the absolute grid. A contact whose reports tell
+//! no slip slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
-use crate::prepared::area::FINGERTIP_RADIUS_M;
-use crate::prepared::stiffness::stiffness_n_m;
-use crate::prepared::surface::SurfaceSlot;
-use asperity_dsp::fractal_noise::{FractalNoise, growth};
-use asperity_dsp::micro_contact::Probe;
-use asperity_dsp::rolling::{Rolling as Law, RollingFilter, RollingForce, RollingForceState, RollingState};
+use crate::prepared::rolled_over::RolledOver;
+use asperity_dsp::rolling::{RollingFilter, RollingForce, RollingForceState, RollingState};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
 
 /// Slower than this a contact neither rolls nor slides, m/s: it goes on as it did.
 const RESTING_M_S: f64 = 1e-4;
-/// Acceleration with which the free weight of what rolls presses, m/s².
-const GRAVITY_M_S2: f64 = 9.81;
-/// Rest of the way to another share after a step of the grid: 8 ms for most of it, half a report at
-/// 60 Hz.
+/// Rest of the way to another share after a step of the grid: 8 ms for most of it.
 const LAG: f64 = 0.8;
 
 /// Rolling of one contact.
@@ -39,19 +31,8 @@ pub(super) struct Rolling {
     sent: RollingForceState,
 }
 
-/// Ground that is rolled over, and the radius.
-#[derive(Clone, Copy)]
-pub(super) struct RolledOver<'a> {
-    pub(super) slot: &'a SurfaceSlot,
-    /// Mean square of the relief that the source has there, m².
-    pub(super) source_power_m2: f64,
-    pub(super) probe: &'a Probe,
-    pub(super) at: &'a PathPoint,
-    pub(super) sample_rate_hz: f64,
-}
-
 impl Rolling {
-    /// A report says how it moves.
+    /// Takes from a report how it moves.
     pub(super) fn tell(&mut self, sample: &ContactSample) {
         self.told = sample.slip_m_s.map(|slip_m_s| (slip_m_s, sample.roll_radius_m));
     }
@@ -61,7 +42,7 @@ impl Rolling {
         self.told.is_some() || self.share != [0.0; 2]
     }
 
-    /// It begins as the newest report says, where the profile begins.
+    /// Begins as the newest report says, where the profile begins.
     pub(super) fn begin(&mut self, over: RolledOver<'_>, surface: &SurfaceBlock) {
         (self.ride, self.roughness) = (RollingState::at(surface.height_m[0]), surface.roughness[0]);
         self.sent = Default::default();
@@ -70,31 +51,15 @@ impl Rolling {
         self.share = [share; 2];
     }
 
-    /// Sets out for the share of the newest report: at the steps of the absolute sample grid.
+    /// Sets out for the share of the newest report: at the steps of the absolute grid.
     pub(super) fn turn(&mut self, over: RolledOver<'_>) {
         let from = self.share[1];
         let wanted = self.wanted(over.at).unwrap_or(from);
         let to = wanted + LAG * (from - wanted);
         // What slides again does so to the bit in the end.
         self.share = [from, if wanted == 0.0 && to < 1e-6 { 0.0 } else { to }];
-        let [u, v] = over.at.velocity_m_s;
         let radius_m = self.told.and_then(|(_, radius_m)| radius_m);
-        let micro_m = over.slot.surface.micro_relief_m * growth(self.roughness);
-        let law = Law {
-            radius_m: radius_m.unwrap_or(over.probe.tip_radius_m.max(FINGERTIP_RADIUS_M)),
-            normal_force_n: over.at.normal_force_n,
-            modulus_pa: over.slot.stroking.ground.modulus_pa(),
-            rms_at_1mm_m: libm::sqrt(micro_m * micro_m + over.source_power_m2),
-            alpha: FractalNoise::alpha(self.roughness),
-        };
-        let [ride_m, patch_m] = law.wavelengths_m();
-        let speed_m_s = libm::hypot(u, v);
-        self.filter = RollingFilter::new(speed_m_s, ride_m, over.sample_rate_hz);
-        let rolling_kg = rolling_kg(over.probe, law.normal_force_n);
-        let stiffness_n_m = stiffness_n_m(over.probe, &over.slot.stroking.ground, law.normal_force_n);
-        let resonance_hz = libm::sqrt(stiffness_n_m / rolling_kg) / std::f64::consts::TAU;
-        let mass = (rolling_kg / over.probe.pad_mass_kg, resonance_hz);
-        self.force = RollingForce::new((speed_m_s, patch_m), mass, over.sample_rate_hz);
+        (self.filter, self.force) = over.filters(radius_m, self.roughness);
     }
 
     /// The share that the newest report asks for; none at rest.
@@ -105,12 +70,11 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground become those of the ride, and friction, where it is `rubbed` and
-    /// known, acts on what slips; `slow_step` samples lie between two steps of the grid.
+    /// Heights of the ground become those of the ride, and friction, where it is known, acts on
+    /// what slips; `slow_step` samples lie between two steps of the grid.
     pub(super) fn run(
         &mut self,
-        position: u64,
-        slow_step: u64,
+        (position, slow_step): (u64, u64),
         surface: &mut SurfaceBlock,
         n: usize,
         rubbed: bool,
@@ -153,20 +117,12 @@ impl Rolling {
         }
     }
 
-    /// Softens `n` heights that lie behind a contact that appears; its share stands still
-    /// meanwhile.
+    /// Softens `n` heights that lie behind a contact that appears.
     pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
-            self.run(0, MAX_BLOCK as u64, surface, n, true);
+            self.run((0, MAX_BLOCK as u64), surface, n, true);
         }
     }
-}
-
-/// Mass of a rolling body that follows the ground, kg: as much as presses with its weight, as far
-/// as the probe has it. A finger gives way.
-fn rolling_kg(probe: &Probe, force_n: f64) -> f64 {
-    let most_kg = if probe.ridge_m > 0.0 { 0.0 } else { probe.finger_mass_kg };
-    probe.pad_mass_kg + (force_n / GRAVITY_M_S2 - probe.pad_mass_kg).clamp(0.0, most_kg)
 }
 
 /// The share at a sample between two steps of the grid.

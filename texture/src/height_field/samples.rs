@@ -26,6 +26,8 @@ pub struct PathBlock<'a> {
     /// True where only heights, roughness and power are read: a
     /// [rigid](super::Properties::is_rigid) source may then leave the rest as it is.
     pub heights_only: bool,
+    /// True where nothing but heights is read, no roughness either.
+    pub bare: bool,
     /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not
     /// [prepared](super::Setup::tip_radii_m) for it is ridden by a point.
     pub tip_radius_m: f64,
@@ -51,6 +53,7 @@ impl Default for PathBlock<'_> {
             contact: 0,
             slopes: false,
             heights_only: false,
+            bare: false,
             tip_radius_m: 0.0,
             at_m: &[],
             bounds_m: None,

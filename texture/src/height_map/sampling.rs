@@ -2,7 +2,6 @@
 
 use super::{HeightMap, Roughness};
 use crate::height_field::{PathBlock, SurfaceBlock};
-use crate::spline::Working;
 
 impl HeightMap {
     /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has
@@ -13,25 +12,28 @@ impl HeightMap {
         bounds_m: Option<&[[f64; 2]; 2]>,
         out: &mut SurfaceBlock,
     ) {
-        let Working { places, samples } = &mut out.working;
+        let working = &mut out.working;
         let (n, of_all) = (path.len(), (widest_m(path.footprint_m), bounds_m));
-        places.forget();
+        working.places.forget();
         let heights = self.ridden();
         if path.slopes {
-            heights.sample_block::<true>(path, of_all, places, samples);
-            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
+            heights.sample_block::<true>(path, of_all, working);
+            let slopes = working.samples.slope_u.iter().zip(&working.samples.slope_v).take(n);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            heights.sample_block::<false>(path, of_all, places, samples);
+            heights.sample_block::<false>(path, of_all, working);
         }
-        out.height_m[..n].copy_from_slice(&samples.value[..n]);
+        out.height_m[..n].copy_from_slice(&working.samples.value[..n]);
+        if path.bare {
+            return;
+        }
         match &self.roughness {
             Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block::<false>(path, of_all, places, samples);
-                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
+                map.sample_block::<false>(path, of_all, working);
+                for (roughness, value) in out.roughness[..n].iter_mut().zip(&working.samples.value) {
                     *roughness = value.clamp(0.0, 1.0);
                 }
             }

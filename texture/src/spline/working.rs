@@ -10,10 +10,12 @@ use super::{Places, Samples};
 pub(crate) struct Working {
     pub(crate) places: Places,
     pub(crate) samples: Samples,
+    /// Two levels that are blended.
+    pub(crate) levels: [Samples; 2],
 }
 
 impl Working {
     pub(crate) const fn new() -> Self {
-        Self { places: Places::new(), samples: Samples::EMPTY }
+        Self { places: Places::new(), samples: Samples::EMPTY, levels: [Samples::EMPTY; 2] }
     }
 }

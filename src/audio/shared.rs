@@ -1,4 +1,5 @@
-//! Shared parts of voices: the designs that none of them owns, and the stretch of samples at hand.
+//! Shared parts of the audio half: the designs that no voice owns, and the stretch of samples at
+//! hand.
 
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;
@@ -43,12 +44,12 @@ impl Shared {
 
     /// Factor of a sample's way by which the micro-relief widens it, so that it is the same relief
     /// at every rate.
-    pub(super) fn noise_footprints(&self) -> f64 {
+    pub(crate) fn noise_footprints(&self) -> f64 {
         (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0)
     }
 
     /// Time in which a contact fades.
-    pub(super) fn fade_samples(&self) -> u32 {
+    pub(crate) fn fade_samples(&self) -> u32 {
         self.fade.len().saturating_sub(1) as u32
     }
 }
@@ -64,6 +65,13 @@ pub(crate) struct Stretch<'a> {
     pub(crate) position: u64,
     /// Number.
     pub(crate) n: usize,
+}
+
+impl Stretch<'_> {
+    /// Tests whether it begins at a step of the absolute grid.
+    pub(crate) fn is_on_grid(self) -> bool {
+        self.position.is_multiple_of(MAX_BLOCK as u64)
+    }
 }
 
 /// The samples at hand, for whoever renders voices.
