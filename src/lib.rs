@@ -109,6 +109,7 @@ pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
 pub use model::click::Click;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
+pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
     Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
@@ -122,7 +123,6 @@ pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
 pub use model::preset::Preset;
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
-pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;
 pub use model::strike_field::{StrikeField, StrikePlace};

@@ -140,9 +140,10 @@ impl DiffuseGroup {
 
     fn set(&mut self, lane: usize, band: &DiffuseBand, rise_s: f64, rate_hz: f64) -> Result<(), DesignError> {
         let nyquist_hz = 0.5 * rate_hz;
-        let centre_hz = DesignError::check("centre_hz", band.centre_hz, "from 1 Hz to below half the rate", |x| {
-            (1.0..nyquist_hz).contains(&x)
-        })?;
+        let centre_hz =
+            DesignError::check("centre_hz", band.centre_hz, "from 1 Hz to below half the rate", |x| {
+                (1.0..nyquist_hz).contains(&x)
+            })?;
         let width_hz = DesignError::check("width_hz", band.width_hz, "at least 1 Hz", |x| x >= 1.0)?;
         let noise_hz = rate_hz / NOISE_STEP as f64;
         let pole = noise_pole((width_hz / noise_hz).min(WIDEST));
@@ -152,7 +153,8 @@ impl DiffuseGroup {
         let mut fastest_per_s: f64 = 0.0;
         let mut sum = 0.0;
         for (i, part) in band.parts.iter().enumerate() {
-            let energy = DesignError::check("energy", part.energy, "0–1e30", |x| (0.0..=1e30).contains(&x))?;
+            let energy =
+                DesignError::check("energy", part.energy, "0–1e30", |x| (0.0..=1e30).contains(&x))?;
             let decay_per_s = part.decay_per_s;
             let decay_per_s =
                 DesignError::check("decay_per_s", decay_per_s, "0–1e5 1/s", |x| (0.0..=1e5).contains(&x))?;
@@ -167,8 +169,7 @@ impl DiffuseGroup {
     }
 
     fn set_pole(&mut self, i: usize, lane: usize, (hz, decay_per_s, gain): (f64, f64, f64), rate_hz: f64) {
-        let (radius, angle) =
-            (libm::exp(-decay_per_s / rate_hz), 2.0 * core::f64::consts::PI * hz / rate_hz);
+        let (radius, angle) = (libm::exp(-decay_per_s / rate_hz), 2.0 * core::f64::consts::PI * hz / rate_hz);
         self.poles[i][0][lane] = (radius * libm::cos(angle)) as f32;
         self.poles[i][1][lane] = (radius * libm::sin(angle)) as f32;
         self.gains[i][lane] = gain as f32;
@@ -399,3 +400,6 @@ fn group_of_bands<S: Set, const N: usize>(
     store(dw, &mut state.dw);
     random.store_array(&mut state.random);
 }
+
+#[cfg(test)]
+mod tests;

@@ -131,7 +131,9 @@ impl ModalModel {
         }
         match (&file.shapes, file.version) {
             (None, VERSION..=VERSION_WITH_BANDS) => {}
-            (Some(shapes), VERSION_WITH_SHAPES | VERSION_WITH_BANDS) => shapes.check(file.modes.len()).map_err(malformed)?,
+            (Some(shapes), VERSION_WITH_SHAPES | VERSION_WITH_BANDS) => {
+                shapes.check(file.modes.len()).map_err(malformed)?
+            }
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
