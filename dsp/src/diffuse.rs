@@ -74,6 +74,18 @@ pub struct DiffuseBand {
     pub parts: [DiffusePart; 2],
 }
 
+/// Width of the bands that fits and stock bodies have, in equivalent rectangular bandwidths of
+/// hearing (Glasberg and Moore 1990): 32 of them, two groups, reach from 60 Hz to 18 kHz.
+pub const BAND_ERB: f64 = 1.25;
+
+/// Edges of bands of [`BAND_ERB`] from one frequency to another.
+pub fn band_edges_hz(low_hz: f64, high_hz: f64) -> impl Iterator<Item = f64> {
+    let number = |hz: f64| 21.4 * libm::log10(1.0 + 4.37e-3 * hz);
+    let low = number(low_hz);
+    let count = ((number(high_hz) - low) / BAND_ERB).max(0.0) as u32;
+    (0..=count).map(move |i| (libm::pow(10.0, (low + BAND_ERB * f64::from(i)) / 21.4) - 1.0) / 4.37e-3)
+}
+
 type Lanes = [f32; BANDS];
 
 /// Coefficients of some bands.
