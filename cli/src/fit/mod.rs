@@ -108,9 +108,9 @@ pub struct Options {
     /// Put this much of what the modes do not explain into the modes file; impacts will play it, ms
     #[arg(long, value_name = "MS")]
     pub burst_ms: Option<f64>,
-    /// Leave out the bands of noise that stand for what the modes do not explain
+    /// Write bands of noise for what the modes do not explain; impacts and strokes will play them
     #[arg(long)]
-    pub no_bands: bool,
+    pub bands: bool,
     /// Body to import of a table with several
     #[arg(long, value_name = "NAME")]
     pub entry: Option<String>,
@@ -154,7 +154,7 @@ impl Options {
             plot: None,
             csv: None,
             burst_ms: None,
-            no_bands: false,
+            bands: false,
             entry: None,
             base_hz: None,
             t60: None,
@@ -208,7 +208,7 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let mut outputs = Outputs::new();
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
-    let mut bands = if options.no_bands { Vec::new() } else { fit.diffuse() };
+    let mut bands = if options.bands { fit.diffuse() } else { Vec::new() };
     rescale_bands(&mut bands, &plain, options.scale_size.unwrap_or(1.0), law.as_ref());
     let mut places = None;
     if options.others().next().is_none() {
@@ -255,6 +255,7 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
         ("--merge", !options.merge.is_empty()),
         ("--family", options.family),
         ("--burst-ms", options.burst_ms.is_some()),
+        ("--bands", options.bands),
         ("--strike", options.strike.is_some()),
     ];
     if let Some((option, _)) = of_recording.into_iter().find(|(_, given)| *given) {

@@ -23,6 +23,8 @@ pub struct BodyEntry {
     pub radiation: bool,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
+    /// False where the bands of noise that its modes may carry are not played.
+    pub diffuse: bool,
     /// Gain of impacts beside strokes; none = by the level policy.
     pub strike_gain: Option<f64>,
     /// Its mass, kg; none = a stock body's own, or unknown.
@@ -43,6 +45,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         material: read_material(&mut fields)?,
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
+        diffuse: fields.flag("diffuse")?.unwrap_or(true),
         strike_gain: fields.number(&parameters::body::STRIKE_GAIN)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,
         bus: fields.text("bus")?,
