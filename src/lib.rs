@@ -110,6 +110,7 @@ pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
 pub use model::click::Click;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
+pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
     Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,

@@ -17,6 +17,7 @@ mod contradictions;
 #[path = "common/counting.rs"]
 mod counting;
 mod debounce;
+mod diffuse;
 mod direct_current;
 mod documents;
 mod dragged_skin;

@@ -135,6 +135,36 @@
 /// Fingernail.
 #define ASP_MATERIAL_NAIL 17
 
+/// Woven cotton, several layers.
+#define ASP_MATERIAL_CLOTH 18
+
+/// Denim.
+#define ASP_MATERIAL_DENIM 19
+
+/// Vegetable-tanned leather.
+#define ASP_MATERIAL_LEATHER 20
+
+/// Skin over soft tissue.
+#define ASP_MATERIAL_SKIN 21
+
+/// Upholstery foam.
+#define ASP_MATERIAL_FOAM 22
+
+/// Cut-pile carpet.
+#define ASP_MATERIAL_CARPET 23
+
+/// Corrugated board, taken as one piece.
+#define ASP_MATERIAL_CARDBOARD 24
+
+/// Stacked paper.
+#define ASP_MATERIAL_PAPER 25
+
+/// Pressed cork.
+#define ASP_MATERIAL_CORK 26
+
+/// Moist soil.
+#define ASP_MATERIAL_SOIL 27
+
 /// A striker whose elastic constants stand in the event.
 #define ASP_MATERIAL_CUSTOM 255
 

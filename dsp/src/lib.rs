@@ -16,6 +16,7 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`diffuse`] | impulses → noise between the modes |
 //! | [`masking`] | modes → the order in which nobody would miss them |
 //! | [`held`] | contacts that press on a body → its pitches and decays |
 //! | [`radiation`] | motion of a surface → pressure at 1 m |
@@ -35,6 +36,7 @@ extern crate std;
 pub mod actuator;
 pub mod butterworth;
 pub mod damping;
+pub mod diffuse;
 mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;

@@ -4,6 +4,7 @@
 use super::shapes_sidecar::{shapes_from_bytes, shapes_to_file};
 use super::storage::{self, Disk, Files};
 use crate::model::click::Click;
+use crate::model::diffuse::Diffuse;
 use crate::model::modal_model::{ModalModel, ModalModelError};
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
@@ -20,6 +21,8 @@ pub const VERSION: u32 = 1;
 /// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of
 /// version 1 do.
 pub const VERSION_WITH_SHAPES: u32 = 2;
+/// The version that has diffuse bands ([`Diffuse`]), with or without shapes.
+pub const VERSION_WITH_BANDS: u32 = 3;
 
 #[derive(Serialize, Deserialize)]
 struct File {
@@ -36,6 +39,8 @@ struct File {
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    diffuse: Option<Diffuse>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shapes: Option<ModeShapes>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -58,7 +63,7 @@ impl ModalModel {
     /// Reads `NAME.modes.json`.
     ///
     /// # Errors
-    /// When the file cannot be read, is not a modes file of version 1 or 2, or holds a number that
+    /// When the file cannot be read, is not a modes file of version 1 to 3, or holds a number that
     /// no body can have.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
         Self::load_from(&Disk, path)
@@ -125,19 +130,24 @@ impl ModalModel {
             file.shapes = Some(shapes_from_bytes(&bytes, file.modes.len()).map_err(told)?);
         }
         match (&file.shapes, file.version) {
-            (None, VERSION | VERSION_WITH_SHAPES) => {}
-            (Some(shapes), VERSION_WITH_SHAPES) => shapes.check(file.modes.len()).map_err(malformed)?,
+            (None, VERSION..=VERSION_WITH_BANDS) => {}
+            (Some(shapes), VERSION_WITH_SHAPES | VERSION_WITH_BANDS) => {
+                shapes.check(file.modes.len()).map_err(malformed)?
+            }
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
-        let File { source, impulse_n_s, modes, positions, residual, shapes, unit, click, .. } = file;
+        if file.diffuse.is_some() && file.version < VERSION_WITH_BANDS {
+            return Err(malformed(format!("diffuse stands in version {}; need version 3", file.version)));
+        }
+        let File { source, impulse_n_s, modes, positions, residual, diffuse, shapes, unit, click, .. } = file;
         let shapes = shapes.map(Arc::new);
-        let model = Self { source, impulse_n_s, modes, positions, residual, shapes, unit, click };
+        let model = Self { source, impulse_n_s, modes, positions, residual, diffuse, shapes, unit, click };
         model.check()?;
         Ok(model)
     }
 
-    /// The text of the modes file, of version 2 where there are shapes; numbers round-trip.
+    /// The text of the modes file, of version 2 where there are shapes, 3 where there are bands; numbers round-trip.
     #[must_use]
     pub fn to_json(&self) -> String {
         serde_json::to_string(&self.file()).unwrap_or_default()
@@ -156,13 +166,18 @@ impl ModalModel {
     fn file(&self) -> File {
         File {
             format: FORMAT.into(),
-            version: if self.shapes.is_some() { VERSION_WITH_SHAPES } else { VERSION },
+            version: match (&self.diffuse, &self.shapes) {
+                (Some(_), _) => VERSION_WITH_BANDS,
+                (None, Some(_)) => VERSION_WITH_SHAPES,
+                (None, None) => VERSION,
+            },
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
+            diffuse: self.diffuse.clone(),
             shapes: self.shapes.as_deref().cloned(),
             click: self.click,
             shapes_beside: None,

@@ -37,6 +37,9 @@ impl<'a> Maker<'a> {
             let told = |error| FileError::told(error).within(format!("body \"{}\"", entry.name));
             model = model.radiating(&material).map_err(told)?;
         }
+        if !entry.diffuse {
+            model.diffuse = None;
+        }
         if let Some(gain) = entry.residual {
             let residual = model.residual.take();
             model = model.with_residual(residual, gain).map_err(FileError::told)?;

@@ -9,6 +9,7 @@ pub(crate) mod clock_mode;
 pub(crate) mod closest_point;
 pub(crate) mod config;
 pub(crate) mod contact_sample;
+pub(crate) mod diffuse;
 pub(crate) mod error;
 pub(crate) mod event;
 pub(crate) mod excitation;

@@ -5,6 +5,7 @@
 //! · J / `impulse_n_s` (Hasti §III-D).
 
 use crate::model::click::Click;
+use crate::model::diffuse::Diffuse;
 use crate::model::material::Material;
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
@@ -41,6 +42,8 @@ pub struct ModalModel {
     pub positions: Vec<Vec<f64>>,
     /// Part of the strike besides modes, played at every impact.
     pub residual: Option<Residual>,
+    /// Bands of noise between and above the modes, played by impacts and strokes.
+    pub diffuse: Option<Diffuse>,
     /// Motion of the surface in each mode: such a body can be struck and stroked anywhere.
     pub shapes: Option<Arc<ModeShapes>>,
     /// Unit of amplitudes and residual.
@@ -65,7 +68,7 @@ pub enum ModalModelError {
         source: std::io::Error,
     },
     /// The file is not JSON of this shape.
-    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1 or 2 and a list \"modes\"", path.display())]
+    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1, 2 or 3 and a list \"modes\"", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -104,6 +107,7 @@ impl ModalModel {
             modes: Vec::new(),
             positions: Vec::new(),
             residual: None,
+            diffuse: None,
             shapes: None,
             unit: Unit::Relative,
             click: None,
@@ -122,6 +126,9 @@ impl ModalModel {
         }
         if let Some(residual) = &mut self.residual {
             residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+        }
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.scale(gain);
         }
         if let Some(click) = &mut self.click {
             click.gain *= gain;
@@ -162,6 +169,9 @@ impl ModalModel {
             Arc::make_mut(shapes).scale(size);
         }
         self.residual = None;
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.resize(size, damping);
+        }
         if let Some(click) = &mut self.click {
             let larger = size * size * size;
             (click.volume_m3, click.mass_kg) = (click.volume_m3 * larger, click.mass_kg * larger);
@@ -243,6 +253,7 @@ impl ModalModel {
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             residual: self.residual.clone(),
+            diffuse: self.diffuse.clone(),
             shapes: self.shapes.as_ref().map(|shapes| Arc::new(shapes.kept(&keep))),
             unit: self.unit,
             click: self.click,
@@ -312,6 +323,9 @@ impl ModalModel {
         }
         if let Some(Err((field, value, expected))) = self.click.as_ref().map(Click::check) {
             return Err(refuse(field.into(), value, expected));
+        }
+        if let Some(Err((field, value, expected))) = self.diffuse.as_ref().map(Diffuse::check) {
+            return Err(refuse(field, value, expected));
         }
         if let Some(Err((field, value, expected))) = self.residual.as_ref().map(Residual::check) {
             return Err(refuse(field.into(), value, expected));

@@ -37,14 +37,18 @@ impl Residual {
         if !(1e3..=1e6).contains(&self.sample_rate_hz) {
             return Err(("residual.sample_rate_hz", self.sample_rate_hz, "1e3–1e6 Hz"));
         }
-        let seconds = self.samples.len() as f64 / self.sample_rate_hz;
-        if seconds > LONGEST_S {
-            return Err(("residual.samples", seconds, "at most 0.5 s of samples"));
+        if self.seconds() > LONGEST_S {
+            return Err(("residual.samples", self.seconds(), "at most 0.5 s of samples"));
         }
         match self.samples.iter().find(|x| !(-1e9..=1e9).contains(*x)) {
             Some(bad) => Err(("residual.samples", f64::from(*bad), "finite, within ±1e9")),
             None => Ok(()),
         }
+    }
+
+    /// Length, s.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.samples.len() as f64 / self.sample_rate_hz
     }
 
     /// Part of the burst below `highest_hz`, if it has more.

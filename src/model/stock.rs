@@ -21,10 +21,12 @@
 //! | bowl | hemisphere, diameter 40 thicknesses | Rayleigh, *Theory of sound*, §235 |
 //! | block | 4 : 2 : 1 | Rayleigh–Ritz in three dimensions (Visscher et al. 1991) |
 //! | box, door; can, bottle, pan, barrel | [`solved`] | tetrahedra; thin shells of revolution |
+//! | sheet, cushion | 300 thicknesses; 3 : 3 : 1 | [`soft`]: bands of noise for modes that overlap |
 //!
 //! Measured against `tests/independent/stock_modes.py`: bar within 0.9 % of the exact Timoshenko
 //! bar (10 modes).
 
+mod soft;
 mod solved;
 mod tables;
 
@@ -88,6 +90,10 @@ pub enum Stock {
     Barrel,
     /// A door leaf that hangs free: struck near a corner (0), in the middle (1), between (2).
     Door,
+    /// A square sheet of what does not ring: cloth, leather, cardboard.
+    Sheet,
+    /// A cushion, 3 : 3 : 1, of what does not ring: foam, carpet, soil.
+    Cushion,
 }
 
 /// A shape in a size and a material.
@@ -102,7 +108,7 @@ struct Shape {
 
 impl Stock {
     /// Every shape with its name in scene files.
-    pub const ALL: [(&'static str, Self); 13] = [
+    pub const ALL: [(&'static str, Self); 15] = [
         ("bar", Self::Bar),
         ("tube", Self::Tube),
         ("ring", Self::Ring),
@@ -116,6 +122,8 @@ impl Stock {
         ("pan", Self::Pan),
         ("barrel", Self::Barrel),
         ("door", Self::Door),
+        ("sheet", Self::Sheet),
+        ("cushion", Self::Cushion),
     ];
 
     /// The shape of that name.
@@ -156,6 +164,8 @@ impl Stock {
             Self::Pan => (Material::STEEL, 0.28),
             Self::Barrel => (Material::WOOD, 0.9),
             Self::Door => (Material::WOOD, 2.0),
+            Self::Sheet => (Material::CLOTH, 0.5),
+            Self::Cushion => (Material::FOAM, 0.4),
         }
     }
 
@@ -171,7 +181,9 @@ impl Stock {
         let name = Self::ALL.iter().find(|(_, shape)| *shape == self).map_or("", |(name, _)| name);
         let source =
             format!("stock {name}, {size_m} m, {}", material.name().unwrap_or("a material of its own"));
-        Ok(shape.model(&material, source))
+        let mut model = shape.model(&material, source);
+        model.diffuse = soft::diffuse(self, &shape, &material, size_m);
+        Ok(model)
     }
 
     /// Its mass in a material, kg.
@@ -195,6 +207,8 @@ impl Stock {
             Self::Pan => solved::shape(&solved::PAN, material, size_m),
             Self::Barrel => solved::shape(&solved::BARREL, material, size_m),
             Self::Door => solved::shape(&solved::DOOR, material, size_m),
+            Self::Sheet => soft::sheet(material, size_m),
+            Self::Cushion => soft::cushion(material, size_m),
         }
     }
 }
@@ -219,8 +233,14 @@ impl Body {
 }
 
 impl Shape {
-    fn model(&self, material: &Material, source: String) -> ModalModel {
+    /// Pressure at 1 m over the velocity of its surface: a sphere of that surface.
+    fn pa_per_m_s(&self, omega: f64) -> f64 {
         let radius_m = (self.surface_m2 / (4.0 * PI)).sqrt();
+        let ka2 = (omega / AIR_M_S * radius_m).powi(2);
+        AIR_PA_S_M * radius_m * ka2 / (4.0 + ka2 * ka2).sqrt()
+    }
+
+    fn model(&self, material: &Material, source: String) -> ModalModel {
         let (mut modes, mut positions) = (Vec::new(), Vec::<Vec<f64>>::new());
         for (omega, at) in &self.modes {
             let decay_per_s = material.damping().decay_per_s(omega / TAU);
@@ -229,9 +249,7 @@ impl Shape {
             if !(LOWEST_HZ..=HIGHEST_HZ).contains(&frequency_hz) {
                 continue;
             }
-            let ka2 = (omega / AIR_M_S * radius_m).powi(2);
-            let pa_per_m_s = AIR_PA_S_M * radius_m * ka2 / (4.0 + ka2 * ka2).sqrt();
-            let amplitude = |shape: f64| shape * pa_per_m_s / self.mass_kg;
+            let amplitude = |shape: f64| shape * self.pa_per_m_s(*omega) / self.mass_kg;
             modes.push(Mode { frequency_hz, decay_per_s, amplitude: amplitude(at[0]), phase_rad: 0.0 });
             positions.resize(at.len() - 1, Vec::new());
             positions.iter_mut().zip(&at[1..]).for_each(|(list, shape)| list.push(amplitude(*shape)));

@@ -8,6 +8,7 @@ use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, Sheddin
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
+use crate::prepared::diffuse::DiffuseSeat;
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
@@ -49,6 +50,7 @@ pub(crate) struct BodySlot {
     rub: Option<Box<BodyRub>>,
     ones: Box<[LaneGains]>,
     bursts: Bursts,
+    diffuse: Option<Box<DiffuseSeat>>,
     click: Option<Click>,
     /// Gain of impacts beside strokes.
     strike_gain: f64,
@@ -119,7 +121,7 @@ impl BodySlot {
         model: &ModalModel,
         mass_kg: Option<f64>,
         loudest_db_spl: f64,
-        kernel: Level,
+        (kernel, seed): (Level, u64),
         (output_rate_hz, sample_rate_hz): (f64, f64),
     ) -> Result<Self, DesignError> {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
@@ -147,6 +149,11 @@ impl BodySlot {
         let places = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
+        let strike = (model.impulse_n_s, model.residual.as_ref());
+        let rates = (output_rate_hz, sample_rate_hz);
+        let diffuse = model.diffuse.as_ref();
+        let diffuse = diffuse.map(|diffuse| DiffuseSeat::new(diffuse, strike, kernel, seed, rates));
+        let diffuse = diffuse.transpose()?.flatten();
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
         let units = match (&field, mass_kg) {
@@ -169,6 +176,7 @@ impl BodySlot {
             rub,
             ones,
             bursts,
+            diffuse,
             click: model.click,
             strike_gain: 1.0,
             early,
@@ -222,6 +230,9 @@ impl BodySlot {
         }
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(sounds, pulse.impulse_n_s);
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.strike(pulse, stamp, sample_rate_hz);
+        }
     }
 
     /// Adds what one contact sends during the present stretch to where it is.
@@ -229,6 +240,8 @@ impl BodySlot {
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
         if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, impulse_n_s)) {
             self.touch(spot.position, impulse_n_s, 1.0);
+        } else if let Some(diffuse) = &mut self.diffuse {
+            diffuse.touch(impulse_n_s, 1.0);
         }
     }
 
@@ -252,6 +265,9 @@ impl BodySlot {
         for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
             *sum += sign * x;
         }
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.touch(impulse_n_s, sign);
+        }
     }
 
     /// As it was made; nothing rings, and nothing is on its way.
@@ -270,6 +286,9 @@ impl BodySlot {
             rub.silence();
         }
         self.bursts.silence();
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.rest();
+        }
     }
 
     /// Forgets all that rings and all that is on its way.
@@ -281,6 +300,9 @@ impl BodySlot {
             place.touched = false;
         }
         self.early.clear();
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.silence();
+        }
     }
 
     /// Level of its ringing: the root of the sum of its modes' squared amplitudes; infinite where
@@ -288,7 +310,8 @@ impl BodySlot {
     pub(crate) fn loudness(&self, position: u64) -> f32 {
         let waits = !self.places.iter().all(|place| place.is_silent(position));
         let waits = waits || self.field.as_ref().is_some_and(|field| !field.is_silent(position));
-        if waits { f32::INFINITY } else { self.bank.energy().sqrt() }
+        let bands = self.diffuse.as_ref().map_or(0.0, |diffuse| diffuse.energy(position));
+        if waits { f32::INFINITY } else { (self.bank.energy() + bands).sqrt() }
     }
 
     /// Tests whether nothing rings and nothing is coming.
@@ -299,6 +322,7 @@ impl BodySlot {
             && self.places.iter().all(|place| place.is_silent(position))
             && self.field.as_ref().is_none_or(|field| field.is_silent(position))
             && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
+            && self.diffuse.as_ref().is_none_or(|diffuse| diffuse.is_silent(position))
     }
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck
@@ -321,11 +345,15 @@ impl BodySlot {
             self.end_stretch(terms.position, out.len());
             return 0;
         }
-        if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
+        let left_out = if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
             self.ring_inputs::<FEW_INPUTS>(terms, out)
         } else {
             self.ring_inputs::<MOST_INPUTS>(terms, out)
+        };
+        if let Some(diffuse) = &mut self.diffuse {
+            diffuse.render(terms.position, out);
         }
+        left_out
     }
 
     /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first

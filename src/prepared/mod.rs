@@ -7,6 +7,7 @@ pub(crate) mod body;
 pub(crate) mod body_field;
 pub(crate) mod body_rub;
 pub(crate) mod bursts;
+pub(crate) mod diffuse;
 pub(crate) mod holding;
 pub(crate) mod impulse_ring;
 pub(crate) mod overlay;

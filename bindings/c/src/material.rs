@@ -43,9 +43,29 @@ pub const ASP_MATERIAL_ACRYLIC: u32 = 15;
 pub const ASP_MATERIAL_RUBBER: u32 = 16;
 /// Fingernail.
 pub const ASP_MATERIAL_NAIL: u32 = 17;
+/// Woven cotton, several layers.
+pub const ASP_MATERIAL_CLOTH: u32 = 18;
+/// Denim.
+pub const ASP_MATERIAL_DENIM: u32 = 19;
+/// Vegetable-tanned leather.
+pub const ASP_MATERIAL_LEATHER: u32 = 20;
+/// Skin over soft tissue.
+pub const ASP_MATERIAL_SKIN: u32 = 21;
+/// Upholstery foam.
+pub const ASP_MATERIAL_FOAM: u32 = 22;
+/// Cut-pile carpet.
+pub const ASP_MATERIAL_CARPET: u32 = 23;
+/// Corrugated board, taken as one piece.
+pub const ASP_MATERIAL_CARDBOARD: u32 = 24;
+/// Stacked paper.
+pub const ASP_MATERIAL_PAPER: u32 = 25;
+/// Pressed cork.
+pub const ASP_MATERIAL_CORK: u32 = 26;
+/// Moist soil.
+pub const ASP_MATERIAL_SOIL: u32 = 27;
 
 /// What scene files call them.
-const NAMES: [(u32, &str); 17] = [
+const NAMES: [(u32, &str); 27] = [
     (ASP_MATERIAL_STEEL, "steel"),
     (ASP_MATERIAL_IRON, "iron"),
     (ASP_MATERIAL_ALUMINIUM, "aluminium"),
@@ -63,6 +83,16 @@ const NAMES: [(u32, &str); 17] = [
     (ASP_MATERIAL_ACRYLIC, "acrylic"),
     (ASP_MATERIAL_RUBBER, "rubber"),
     (ASP_MATERIAL_NAIL, "nail"),
+    (ASP_MATERIAL_CLOTH, "cloth"),
+    (ASP_MATERIAL_DENIM, "denim"),
+    (ASP_MATERIAL_LEATHER, "leather"),
+    (ASP_MATERIAL_SKIN, "skin"),
+    (ASP_MATERIAL_FOAM, "foam"),
+    (ASP_MATERIAL_CARPET, "carpet"),
+    (ASP_MATERIAL_CARDBOARD, "cardboard"),
+    (ASP_MATERIAL_PAPER, "paper"),
+    (ASP_MATERIAL_CORK, "cork"),
+    (ASP_MATERIAL_SOIL, "soil"),
 ];
 
 /// A striker whose elastic constants stand in the event.

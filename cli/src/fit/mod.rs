@@ -21,8 +21,9 @@ use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
 use crate::wav;
+use asperity_dsp::diffuse::DiffuseBand;
 use asperity_dsp::mode::Mode;
-use asperity_fit::after::scaling::{DampingLaw, scale_size, transfer_damping};
+use asperity_fit::after::scaling::{DampingLaw, rescale_bands, scale_size, transfer_damping};
 use asperity_fit::after::strikes::{Merged, merge};
 use asperity_fit::after::table;
 use asperity_fit::body::residual::Burst;
@@ -107,6 +108,9 @@ pub struct Options {
     /// Put this much of what the modes do not explain into the modes file; impacts will play it, ms
     #[arg(long, value_name = "MS")]
     pub burst_ms: Option<f64>,
+    /// Write bands of noise for what the modes do not explain; impacts and strokes will play them
+    #[arg(long)]
+    pub bands: bool,
     /// Body to import of a table with several
     #[arg(long, value_name = "NAME")]
     pub entry: Option<String>,
@@ -150,6 +154,7 @@ impl Options {
             plot: None,
             csv: None,
             burst_ms: None,
+            bands: false,
             entry: None,
             base_hz: None,
             t60: None,
@@ -203,12 +208,16 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let mut outputs = Outputs::new();
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
+    let mut bands = if options.bands { fit.diffuse() } else { Vec::new() };
+    rescale_bands(&mut bands, &plain, options.scale_size.unwrap_or(1.0), law.as_ref());
     let mut places = None;
     if options.others().next().is_none() {
-        let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse).with_burst(burst);
+        let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse);
+        let body = body.with_burst(burst).with_bands(&bands);
         modes_file::write(&mut outputs, &options.output, &body)?;
     } else {
-        let merged = write_strikes(&mut outputs, options, channel, &recording, &fit, burst, &changed)?;
+        let first = First { recording: &recording, fit: &fit, burst, bands: &bands };
+        let merged = write_strikes(&mut outputs, options, channel, first, &changed)?;
         let recordings: Vec<&Path> =
             std::iter::once(&options.recording).chain(options.others()).map(PathBuf::as_path).collect();
         let mesh = options.mesh.as_deref();
@@ -246,6 +255,7 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
         ("--merge", !options.merge.is_empty()),
         ("--family", options.family),
         ("--burst-ms", options.burst_ms.is_some()),
+        ("--bands", options.bands),
         ("--strike", options.strike.is_some()),
     ];
     if let Some((option, _)) = of_recording.into_iter().find(|(_, given)| *given) {
@@ -357,16 +367,23 @@ fn material(options: &Options) -> Result<Option<DampingLaw>, CliError> {
     })
 }
 
+/// The first strike of several, and what the body has of it besides modes.
+struct First<'a> {
+    recording: &'a Recording,
+    fit: &'a Fit,
+    burst: Option<Burst>,
+    bands: &'a [DiffuseBand],
+}
+
 /// Several strikes: one body with a strike position each, and `OUT.strike0.modes.json` and so on.
 fn write_strikes(
     outputs: &mut Outputs,
     options: &Options,
     channel: ChannelChoice,
-    recording: &Recording,
-    fit: &Fit,
-    burst: Option<Burst>,
+    first: First<'_>,
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
 ) -> Result<Merged, CliError> {
+    let First { recording, fit, burst, bands } = first;
     let others =
         options.others().map(|path| fitted(path, channel, options)).collect::<Result<Vec<_>, CliError>>()?;
     let strikes: Vec<(&Recording, &Fit)> =
@@ -374,7 +391,8 @@ fn write_strikes(
     let merged = merge(&strikes);
     let body = modes_file::Body::plain(&fit.source, &changed(&merged.strikes[0]), options.impulse)
         .with_positions(&merged.positions())
-        .with_burst(burst);
+        .with_burst(burst)
+        .with_bands(bands);
     modes_file::write(outputs, &options.output, &body)?;
     for (s, modes) in merged.strikes.iter().enumerate() {
         let name = options.output.to_string_lossy();

@@ -3,6 +3,7 @@
 
 use crate::error::CliError;
 use crate::output::Outputs;
+use asperity_dsp::diffuse::DiffuseBand;
 use asperity_dsp::mode::Mode;
 use asperity_fit::body::residual::{BandEnvelope, Burst};
 use asperity_fit::{Fit, FittedMode};
@@ -23,6 +24,8 @@ pub struct Body<'a> {
     fit: Option<Details>,
     #[serde(skip_serializing_if = "Option::is_none")]
     residual: Option<Excitation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diffuse: Option<asperity::Diffuse>,
 }
 
 /// The residual that impacts play.
@@ -83,7 +86,8 @@ impl<'a> Body<'a> {
     pub fn plain(source: &'a str, modes: &[Mode], impulse_n_s: f64) -> Self {
         let modes = modes.iter().map(plain).collect();
         let (format, version) = ("asperity.modes", 1);
-        Self { format, version, source, impulse_n_s, modes, positions: Vec::new(), fit: None, residual: None }
+        let (positions, fit, residual, diffuse) = (Vec::new(), None, None, None);
+        Self { format, version, source, impulse_n_s, modes, positions, fit, residual, diffuse }
     }
 
     /// A fit, with `modes` (rescaled ones, perhaps) in the place of its own.
@@ -95,6 +99,21 @@ impl<'a> Body<'a> {
     /// With amplitudes at further strike positions.
     pub fn with_positions(mut self, positions: &[Vec<f64>]) -> Self {
         self.positions = positions.to_vec();
+        self
+    }
+
+    /// With bands of noise, if there are any: then of version 3.
+    pub fn with_bands(mut self, bands: &[DiffuseBand]) -> Self {
+        if !bands.is_empty() {
+            let band = |band: &DiffuseBand| asperity::DiffuseBand {
+                centre_hz: band.centre_hz,
+                width_hz: band.width_hz,
+                parts: band.parts.iter().filter(|part| part.energy > 0.0).copied().collect(),
+            };
+            let bands = bands.iter().map(band).collect();
+            let source = "what the modes leave of the recording".to_owned();
+            (self.version, self.diffuse) = (3, Some(asperity::Diffuse { source, bands }));
+        }
         self
     }
 

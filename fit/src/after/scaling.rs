@@ -8,6 +8,7 @@
 //! same two parameters as a material's signature). A mode keeps its own ratio to the law, so that
 //! bodies keep their character when their material is exchanged.
 
+use asperity_dsp::diffuse::DiffuseBand;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 
@@ -94,6 +95,23 @@ pub fn scale_size(modes: &[Mode], size: f64) -> Vec<Mode> {
 pub fn transfer_damping(modes: &[Mode], law: &DampingLaw) -> Vec<Mode> {
     let own = DampingLaw::of(modes);
     moved(modes, 1.0, |hz, _| own.map_or(1.0, |own| law.decay_per_s(hz) / own.decay_per_s(hz).max(1e-12)))
+}
+
+/// The bands of a body of these `modes`, `size` times as large and of another material's `law`, if
+/// any: amplitudes stay, decays follow the modes' law.
+pub fn rescale_bands(bands: &mut [DiffuseBand], modes: &[Mode], size: f64, law: Option<&DampingLaw>) {
+    let own = DampingLaw::of(modes);
+    let at = |law: Option<&DampingLaw>, hz: f64| law.map_or(1.0, |law| law.decay_per_s(hz).max(1e-12));
+    for band in bands {
+        let own_per_s = at(own.as_ref(), band.centre_hz);
+        band.centre_hz /= size;
+        band.width_hz /= size;
+        let ratio = at(law.filter(|_| own.is_some()).or(own.as_ref()), band.centre_hz) / own_per_s;
+        for part in &mut band.parts {
+            part.decay_per_s *= ratio;
+            part.energy /= ratio;
+        }
+    }
 }
 
 fn moved(modes: &[Mode], size: f64, factor: impl Fn(f64, f64) -> f64) -> Vec<Mode> {

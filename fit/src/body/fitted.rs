@@ -4,6 +4,7 @@
 //! the modes file is struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t +
 //! φ) from the onset on and nothing else.
 
+use crate::body::diffuse;
 use crate::body::residual::{Burst, Residual, ratio_db};
 use crate::body::solved::{Solved, Solving};
 use crate::body::struck::struck;
@@ -15,6 +16,7 @@ pub use crate::proof::warning::Warning;
 use crate::recording::Recording;
 use crate::sinusoid::partial::Partial;
 use crate::ways::analysis::Analysis;
+use asperity_dsp::diffuse::DiffuseBand;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 
@@ -220,6 +222,17 @@ impl Fit {
     #[must_use]
     pub fn burst(&self, length_s: f64) -> Burst {
         Burst::new(&self.residual.samples[self.onset_sample..], length_s, self.sample_rate_hz)
+    }
+
+    /// Bands of noise for what the modes leave, as the answer to the recorded strike.
+    #[must_use]
+    pub fn diffuse(&self) -> Vec<DiffuseBand> {
+        let struck = self.resynthesis();
+        let recorded: Vec<f64> = self.residual.samples.iter().zip(&struck).map(|(a, b)| a + b).collect();
+        let begin_s = self.onset_s - self.onset_sample as f64 / self.sample_rate_hz;
+        let end = (((self.end_s - begin_s) * self.sample_rate_hz) as usize).min(recorded.len());
+        let strike = self.onset_sample.min(end)..end;
+        diffuse::bands(&recorded[strike.clone()], &struck[strike], &recorded, self.sample_rate_hz)
     }
 
     /// The modes in the place of the strike, as long as the recording.

@@ -23,6 +23,8 @@ pub struct BodyEntry {
     pub radiation: bool,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
+    /// False where the bands of noise that its modes may carry are not played.
+    pub diffuse: bool,
     /// Gain of impacts beside strokes; none = by the level policy.
     pub strike_gain: Option<f64>,
     /// Least time between equally strong impacts that are heard, s; none = 0.
@@ -45,6 +47,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         material: read_material(&mut fields)?,
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
+        diffuse: fields.flag("diffuse")?.unwrap_or(true),
         strike_gain: fields.number(&parameters::body::STRIKE_GAIN)?,
         least_time_s: fields.number(&parameters::body::LEAST_TIME_S)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,

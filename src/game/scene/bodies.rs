@@ -155,7 +155,13 @@ impl Scene {
             Made { slot: slot.rested(), of }
         } else {
             let loudest_db_spl = self.loudest_db_spl(body);
-            let slot = BodySlot::new(heard, mass_kg, loudest_db_spl, self.kernel, (rate, inner))?;
+            let slot = BodySlot::new(
+                heard,
+                mass_kg,
+                loudest_db_spl,
+                (self.kernel, self.config.seed),
+                (rate, inner),
+            )?;
             Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
         };
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);

@@ -142,4 +142,54 @@ materials! {
         alpha 20.0, eta 0.1, beta 0.0, "assumed";
         mu 0.5, 0.4, "assumed";
         R 0.3, relief 1.0, "assumed";
+    CLOTH, "cloth", "Woven cotton, several layers.":
+        E 5e6, nu 0.3, rho 400.0, "assumed";
+        alpha 60.0, eta 0.3, beta 0.0, "assumed";
+        mu 0.6, 0.5, "assumed";
+        R 0.7, relief 2.0, "assumed";
+    DENIM, "denim", "Denim.":
+        E 2e7, nu 0.3, rho 600.0, "assumed";
+        alpha 60.0, eta 0.25, beta 0.0, "assumed";
+        mu 0.6, 0.5, "assumed";
+        R 0.8, relief 2.0, "assumed";
+    LEATHER, "leather", "Vegetable-tanned leather.":
+        E 5e7, nu 0.4, rho 900.0, "[Handbook] 20–200 MPa; ν assumed";
+        alpha 60.0, eta 0.15, beta 0.0, "assumed";
+        mu 0.7, 0.6, "assumed";
+        R 0.5, relief 1.5, "assumed";
+    SKIN, "skin", "Skin over soft tissue.":
+        E 4e5, nu 0.48, rho 1100.0, "assumed, within the 0.1–1 MPa of indentation";
+        alpha 80.0, eta 0.4, beta 0.0, "assumed";
+        mu 0.8, 0.6, "assumed";
+        R 0.5, relief 1.5, "assumed";
+    FOAM, "foam", "Upholstery foam.":
+        E 1e5, nu 0.3, rho 30.0, "[Handbook]; ν assumed";
+        alpha 80.0, eta 0.3, beta 0.0, "assumed";
+        mu 0.9, 0.7, "assumed";
+        R 0.8, relief 2.0, "assumed";
+    CARPET, "carpet", "Cut-pile carpet.":
+        E 2e5, nu 0.2, rho 200.0, "assumed";
+        alpha 80.0, eta 0.4, beta 0.0, "assumed";
+        mu 0.6, 0.5, "assumed";
+        R 1.0, relief 3.0, "assumed";
+    CARDBOARD, "cardboard", "Corrugated board, taken as one piece.":
+        E 3e8, nu 0.3, rho 150.0, "assumed, from the stiffness of single-wall board";
+        alpha 60.0, eta 0.1, beta 0.0, "assumed";
+        mu 0.5, 0.4, "assumed";
+        R 0.5, relief 1.5, "assumed";
+    PAPER, "paper", "Stacked paper.":
+        E 1e9, nu 0.3, rho 800.0, "assumed, a fifth of a single sheet's [Handbook] along its fibres";
+        alpha 60.0, eta 0.1, beta 0.0, "assumed";
+        mu 0.5, 0.4, "assumed";
+        R 0.4, relief 1.0, "assumed";
+    CORK, "cork", "Pressed cork.":
+        E 2e7, nu 0.05, rho 180.0, "[Handbook]";
+        alpha 60.0, eta 0.15, beta 0.0, "assumed";
+        mu 0.6, 0.5, "assumed";
+        R 0.7, relief 1.5, "assumed";
+    SOIL, "soil", "Moist soil.":
+        E 1e7, nu 0.3, rho 1600.0, "[Handbook] 5–50 MPa";
+        alpha 80.0, eta 0.2, beta 0.0, "assumed";
+        mu 0.6, 0.5, "assumed";
+        R 1.0, relief 3.0, "assumed";
 }
