@@ -117,6 +117,7 @@ pub use model::event::{
 pub use model::excitation::{Excitation, Exciter};
 pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
+pub use model::level_policy::LevelPolicy;
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};

@@ -2,6 +2,7 @@
 
 pub(crate) mod clock;
 pub(crate) mod contradiction;
+pub(crate) mod levels;
 pub(crate) mod places;
 pub(crate) mod recording;
 pub(crate) mod scene;

@@ -3,6 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 mod bodies;
+mod levelled;
 mod ports;
 mod quiet;
 mod recorded;
@@ -12,6 +13,7 @@ mod touched;
 use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
+use crate::game::levels::{BodyLevel, Levels};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
@@ -31,7 +33,7 @@ use crate::model::strike_field::StrikeField;
 use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
-use crate::prepared::surface::SurfaceSlot;
+use crate::prepared::surface::{SurfaceLevels, SurfaceSlot};
 use asperity_dsp::limits;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::simd::Level;
@@ -82,6 +84,8 @@ pub struct Scene {
     /// Gain of impacts on a body that has none of its own: what the level policy has found for
     /// those of the scene file.
     pub(crate) strike_gain: f64,
+    /// Levels that are found when bodies and surfaces are added.
+    levels: Levels,
     /// For [`Scene::why_silent`].
     reported: Reported,
     /// Motions that the reports give twice.
@@ -100,6 +104,11 @@ pub struct Scene {
 struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
+    /// Place of its probe; none = the engine's own.
+    probe: Option<usize>,
+    /// The gain that the game has told, and whether nobody feels it.
+    gain: f64,
+    unfelt: bool,
 }
 
 /// Surface as the game half knows it.
@@ -115,6 +124,7 @@ pub(crate) struct KnownSurface {
     body: Option<BodyId>,
     /// True where contacts on it stick and slip.
     rubs: bool,
+    levels: SurfaceLevels,
 }
 
 /// Body as the game half knows it.
@@ -126,6 +136,7 @@ pub(crate) struct KnownBody {
     field: Option<Arc<StrikeField>>,
     /// Its mass is known.
     weighs: bool,
+    level: BodyLevel,
 }
 
 impl KnownBody {
@@ -152,6 +163,7 @@ impl Scene {
             tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
             strike_gain: 1.0,
+            levels: Levels::default(),
             reported: Reported::default(),
             motions: Motions::default(),
             held: Vec::new(),
@@ -226,7 +238,8 @@ impl Scene {
     }
 
     fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
-        let (message, known) = self.prepared_surface(id, surface)?;
+        let (surface, levels) = self.levelled_surface(surface)?;
+        let (message, known) = self.prepared_surface(id, surface, levels)?;
         self.send(message)?;
         self.surfaces.set(id.0, known);
         Ok(())
@@ -237,6 +250,7 @@ impl Scene {
         &self,
         id: SurfaceId,
         surface: Surface,
+        levels: SurfaceLevels,
     ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
         surface.source.prepare(&Setup {
@@ -250,6 +264,7 @@ impl Scene {
             lowest_mode_hz: f64::INFINITY,
             field: None,
             weighs: false,
+            level: BodyLevel { gain: 1.0, strike_gain: 1.0, peak_per_n_s: 0.0 },
         };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let rubs = surface.rubs().is_some();
@@ -281,10 +296,11 @@ impl Scene {
             stroking,
             overlay,
             period_m,
+            levels: levels.clone(),
         });
         Ok((
             Message::SetSurface { id, surface },
-            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs },
+            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs, levels },
         ))
     }
 

@@ -85,7 +85,7 @@ impl Scene {
             Counters::add(&self.counters.too_soon, 1);
             return Ok(());
         }
-        self.send_stamped(stamp, event)?;
+        self.send_stamped(stamp, self.levelled(event))?;
         self.reported.accept(&event, stamp, self.rings(&event));
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
         self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);

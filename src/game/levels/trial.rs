@@ -1,0 +1,165 @@
+//! Trials: what reference motions come to on a body, and on a surface with its body and each probe.
+
+use super::bench::{Bench, Motion, kinds};
+use crate::model::body::Body;
+use crate::model::config::Config;
+use crate::model::error::AddError;
+use crate::model::event::Touching;
+use crate::model::surface::{Roughness, Surface};
+use crate::open::levels::{FROM, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power};
+use asperity_dsp::micro_contact::Probe;
+use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
+use asperity_texture::height_map::{Extent, HeightMap};
+use std::hash::{DefaultHasher, Hash};
+
+/// Forces of the strokes that tell how a surface grows louder, N, and their speed, m/s: from what
+/// weighs 10 g to what weighs 100 kg.
+pub(super) const FORCES_N: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
+pub(super) const FAST_M_S: f64 = 1.0;
+/// Length of each, s.
+const FAST_S: f64 = 0.2;
+
+/// What a body came to, at a gain of 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BodyTrial {
+    /// Rms under the reference stroke on a plain finish of its material.
+    pub(super) stroked: f64,
+    /// Peak of one reference strike, and of fifty a second.
+    pub(super) struck: f64,
+    pub(super) burst: f64,
+}
+
+impl BodyTrial {
+    pub(super) fn of(config: &Config, body: &Body) -> Result<Self, AddError> {
+        let mut bench = Bench::new(config)?;
+        let id = bench.scene.add_body(alone(body))?;
+        let surface = plain(body)?.on(id);
+        let surface = bench.scene.add_surface(surface)?;
+        let [stroked, _] = reference(&mut bench, Touching::on(surface), 0, [1.0; 2]);
+        let [struck, burst] = bench.strikes(id);
+        Ok(Self { stroked, struck, burst })
+    }
+}
+
+/// What a surface came to with one probe.
+#[derive(Debug, Clone)]
+pub(super) struct StrokeTrial {
+    /// Rms of its body under the reference stroke, and of each [kind](kinds) of channel.
+    pub(super) heard: f64,
+    pub(super) felt: Vec<f64>,
+    /// Rms of its body at each of [`FORCES_N`].
+    pub(super) fast: [f64; FORCES_N.len()],
+}
+
+/// Renders over a surface that rings `body` with each probe, and gives the surface back.
+pub(super) fn of_surface(
+    config: &Config,
+    mut surface: Surface,
+    body: &Body,
+    probes: &[(Option<usize>, Probe)],
+) -> Result<(Surface, Vec<StrokeTrial>), AddError> {
+    let mut bench = Bench::new(config)?;
+    let id = bench.scene.add_body(alone(body))?;
+    let own = surface.body.replace(id);
+    let size_m = [surface.width_m, surface.height_m];
+    let mut touchings = Vec::new();
+    for (place, probe) in probes {
+        let probe = place.map(|_| bench.scene.add_probe(*probe)).transpose()?;
+        touchings.push(probe);
+    }
+    let surface = bench.scene.add_surface(surface)?;
+    let mut trials = Vec::new();
+    for probe in touchings {
+        let touching = Touching { probe, ..Touching::on(surface) };
+        let channels = kinds(&config.actuators).len();
+        let both: Vec<[f64; 2]> =
+            (0..channels).map(|channel| reference(&mut bench, touching, channel, size_m)).collect();
+        let fast = FORCES_N.map(|force_n| {
+            let motion = Motion { way: WAYS[1], speed_m_s: FAST_M_S, force_n, length_s: FAST_S };
+            bench.stroke(touching, 0, size_m, &motion).heard.sqrt()
+        });
+        trials.push(StrokeTrial {
+            heard: both.iter().fold(0.0, |most, [heard, _]| f64::max(most, *heard)),
+            felt: both.iter().map(|[_, felt]| *felt).collect(),
+            fast,
+        });
+    }
+    let slot = bench.renderer.hand_over().surfaces.pop();
+    let (_, slot) = slot.ok_or(AddError::Unknown("surface"))?;
+    let mut surface = slot.surface;
+    surface.body = own;
+    Ok((surface, trials))
+}
+
+/// Rms heard and felt of the reference stroke in all directions.
+fn reference(bench: &mut Bench, touching: Touching, channel: usize, size_m: [f64; 2]) -> [f64; 2] {
+    let powers = WAYS.map(|way| {
+        let motion = Motion {
+            way,
+            speed_m_s: REFERENCE_SPEED_M_S,
+            force_n: REFERENCE_FORCE_N,
+            length_s: STROKE_S,
+        };
+        bench.stroke(touching, channel, size_m, &motion)
+    });
+    [powers.map(|power| power.heard), powers.map(|power| power.felt)]
+        .map(|powers| mean_power(&powers).unwrap_or(0.0).sqrt())
+}
+
+/// The body on the bench's only bus, as loud as its modes.
+fn alone(body: &Body) -> Body {
+    Body { bus: 0, gain: 1.0, strike_gain: None, least_time_s: 0.0, sends: Default::default(), ..body.clone() }
+}
+
+/// A plane with the finish of a body's material.
+fn plain(body: &Body) -> Result<Surface, AddError> {
+    let extent = Extent { width_m: 1.0, height_m: 1.0, relief_m: 0.0 };
+    let map = HeightMap::flat(extent, body.material.roughness).map_err(|_| AddError::Unknown("plane"))?;
+    Ok(Surface::from_map(map)?.of(body.material))
+}
+
+/// Content of a surface as far as strokes meet it, hashed; none where its samples depend on more
+/// than their places.
+pub(super) fn content(surface: &mut Surface, rate_hz: f64) -> Result<Option<DefaultHasher>, AddError> {
+    let properties = surface.properties();
+    if !properties.is_stateless {
+        return Ok(None);
+    }
+    surface.source.prepare(&Setup { sample_rate_hz: rate_hz, voices: 1, tip_radii_m: &[] })?;
+    let size_m = [surface.width_m, surface.height_m];
+    let mut hasher = DefaultHasher::new();
+    sampled(&mut *surface.source, size_m, &mut hasher);
+    if let Roughness::Map(map) = &mut surface.roughness {
+        sampled(&mut **map, size_m, &mut hasher);
+    } else {
+        format!("{:?}", surface.roughness).hash(&mut hasher);
+    }
+    let Surface { wraps, strike_position, micro_relief_m, outer_scale_m, friction, .. } = *surface;
+    let finish = (size_m, wraps, strike_position, micro_relief_m, outer_scale_m, friction);
+    let Surface { compliance_m_n, excitation, stick_slip, frame, .. } = *surface;
+    let rest = (compliance_m_n, excitation, stick_slip, frame);
+    let source = (properties.band, properties.reach_m, properties.beyond);
+    format!("{finish:?} {rest:?} {source:?}").hash(&mut hasher);
+    Ok(Some(hasher))
+}
+
+/// Hashes heights and slopes along the ways of the reference stroke.
+fn sampled(source: &mut dyn HeightField, size_m: [f64; 2], hasher: &mut DefaultHasher) {
+    const STEP_M: f64 = STROKE_S * REFERENCE_SPEED_M_S / MAX_BLOCK as f64;
+    for way in WAYS {
+        let place = |i: usize| [0, 1].map(|axis| FROM[axis] * size_m[axis] + way[axis] * i as f64 * STEP_M);
+        let position_m: [[f64; 2]; MAX_BLOCK] = std::array::from_fn(place);
+        let path = PathBlock {
+            position_m: &position_m,
+            velocity_m_s: &[way.map(|share| share * REFERENCE_SPEED_M_S); MAX_BLOCK],
+            footprint_m: &[STEP_M; MAX_BLOCK],
+            slopes: true,
+            ..PathBlock::default()
+        };
+        let mut out = SurfaceBlock::default();
+        source.sample(&path, &mut out);
+        let slopes = out.gradient.as_flattened();
+        let numbers = out.height_m.iter().chain(slopes).chain(&out.roughness).chain(&out.friction);
+        numbers.for_each(|x| x.to_bits().hash(hasher));
+    }
+}
