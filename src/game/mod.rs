@@ -1,5 +1,6 @@
 //! The game thread's half: takes resources and reports, checks them, stamps them, sends them.
 
+pub(crate) mod clipping;
 pub(crate) mod clock;
 pub(crate) mod contradiction;
 pub(crate) mod levels;

@@ -11,6 +11,7 @@ mod reports;
 mod touched;
 
 use crate::files::contact_log::LogEdit;
+use crate::game::clipping::Strongest;
 use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
 use crate::game::levels::{BodyLevel, Levels};
@@ -86,6 +87,8 @@ pub struct Scene {
     pub(crate) strike_gain: f64,
     /// Levels that are found when bodies and surfaces are added.
     levels: Levels,
+    /// For [`Scene::why_clipped`].
+    strongest: Strongest,
     /// For [`Scene::why_silent`].
     reported: Reported,
     /// Motions that the reports give twice.
@@ -164,6 +167,7 @@ impl Scene {
             given: HashMap::new(),
             strike_gain: 1.0,
             levels: Levels::default(),
+            strongest: Strongest::default(),
             reported: Reported::default(),
             motions: Motions::default(),
             held: Vec::new(),
@@ -264,7 +268,7 @@ impl Scene {
             lowest_mode_hz: f64::INFINITY,
             field: None,
             weighs: false,
-            level: BodyLevel { gain: 1.0, strike_gain: 1.0, peak_per_n_s: 0.0 },
+            level: BodyLevel::SILENT,
         };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let rubs = surface.rubs().is_some();

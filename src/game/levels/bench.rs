@@ -16,6 +16,8 @@ use crate::model::material::Material;
 use crate::open::levels::{self, BURST, FROM, PAUSE_S, SETTLED_S};
 use crate::rate::design;
 
+/// Rate of trials, Hz.
+pub(super) const RATE_HZ: f64 = 44_100.0;
 /// Steps of a game a second.
 const STEPS_HZ: f64 = 60.0;
 
@@ -26,6 +28,8 @@ pub(super) struct Motion {
     pub(super) speed_m_s: f64,
     pub(super) force_n: f64,
     pub(super) length_s: f64,
+    /// Time after it for what rings, s.
+    pub(super) pause_s: f64,
 }
 
 /// Mean squares of a stroke, once it has settled.
@@ -69,6 +73,8 @@ impl Bench {
             audio: vec![AudioBus::default()],
             levels: LevelPolicy::AsGiven,
             clock: ClockMode::default(),
+            // The device's rate is not the scene's.
+            sample_rate_hz: RATE_HZ,
             oversampling: 1,
             max_contacts: 1,
             max_ports: 1,
@@ -140,7 +146,7 @@ impl Bench {
         }
         self.run_to(self.at_s + motion.length_s);
         self.report(motion.length_s, ContactEvent::end(contact));
-        self.at_s += motion.length_s + PAUSE_S;
+        self.at_s += motion.length_s + motion.pause_s;
         self.run_to(self.at_s);
         let mean = |sum: f64| if sum.is_finite() { sum / frames.max(1) as f64 } else { 0.0 };
         Power { heard: mean(power.heard), felt: mean(power.felt) }

@@ -21,9 +21,9 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use trial::{BodyTrial, FAST_M_S, FORCES_N, StrokeTrial};
 
-/// Rms towards which a stroke grows that nobody feels, full scale 1: −14 dB, four below which its
-/// peaks are.
-const LOUDEST_STROKE: f64 = 0.2;
+/// Rms towards which a stroke grows that nobody feels, full scale 1: −17 dB. Peaks are four times
+/// as high, and two bodies may sound.
+const LOUDEST_STROKE: f64 = 0.14;
 /// Exponent of a stroke's growth with its speed.
 const SPEED_EXPONENT: f64 = 0.7;
 /// Bodies of which the trials are kept.
@@ -38,6 +38,9 @@ const STAND_IN: (Stock, Material, f64) = (Stock::Plate, Material::CERAMIC, 0.14)
 pub(crate) struct BodyLevel {
     /// Gain of its modes.
     pub(crate) gain: f64,
+    /// Gain with which it would land on the reference: that of trials of its surfaces, so that what
+    /// rings beside it on them has its own level.
+    pub(crate) own_gain: f64,
     /// Gain of impacts beside strokes.
     pub(crate) strike_gain: f64,
     /// Peak of an impact of 1 N·s, full scale 1; 0 where nothing is known.
@@ -56,9 +59,13 @@ pub(crate) struct Levels {
 }
 
 impl BodyLevel {
+    /// Level of nothing that rings.
+    pub(crate) const SILENT: Self = Self { gain: 1.0, own_gain: 1.0, strike_gain: 1.0, peak_per_n_s: 0.0 };
+
     /// Level of a body as its numbers say.
     pub(crate) fn given(body: &Body) -> Self {
-        Self { gain: 1.0, strike_gain: body.strike_gain.unwrap_or(1.0), peak_per_n_s: 0.0 }
+        let strike_gain = body.strike_gain.unwrap_or(1.0);
+        Self { strike_gain, ..Self::SILENT }
     }
 
     /// The factor that keeps an impact of this impulse within full scale.
@@ -91,8 +98,8 @@ impl Levels {
             return Ok(given);
         }
         let trial = self.body_trial(config, body)?;
-        let (found, reference) = match (trial.stroked > SILENT, trial.struck > SILENT) {
-            (true, _) => (trial.stroked, AUDIO_REFERENCE),
+        let (found, reference) = match (trial.drawn > SILENT, trial.struck > SILENT) {
+            (true, _) => (trial.drawn, AUDIO_REFERENCE),
             (false, true) => (trial.struck, STRIKE_REFERENCE),
             (false, false) => return Ok(given),
         };
@@ -101,7 +108,12 @@ impl Levels {
         let own = config.levels.factor(1.0, within, &mut self.strikes);
         let strike_gain = body.strike_gain.unwrap_or(own);
         let peak_per_n_s = gain * strike_gain * trial.struck / STRIKE_N_S;
-        Ok(BodyLevel { gain, strike_gain, peak_per_n_s })
+        Ok(BodyLevel { gain, own_gain: reference / found, strike_gain, peak_per_n_s })
+    }
+
+    /// Peak of an impact of 1 N·s on a body whose gains are 1.
+    pub(crate) fn peak_per_n_s(&mut self, config: &Config, body: &Body) -> Result<f64, AddError> {
+        Ok(self.body_trial(config, body)?.struck / STRIKE_N_S)
     }
 
     fn body_trial(&mut self, config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
@@ -117,20 +129,21 @@ impl Levels {
         Ok(trial)
     }
 
-    /// Modes as loud as their level.
-    pub(crate) fn model_at(model: &ModalModel, level: BodyLevel) -> Result<Cow<'_, ModalModel>, AddError> {
-        if level.gain == 1.0 {
+    /// Modes that are `gain` times as loud.
+    pub(crate) fn model_at(model: &ModalModel, gain: f64) -> Result<Cow<'_, ModalModel>, AddError> {
+        if gain == 1.0 {
             return Ok(Cow::Borrowed(model));
         }
-        model.clone().with_gain(level.gain).map(Cow::Owned).map_err(|_| too_loud(level.gain))
+        model.clone().with_gain(gain).map(Cow::Owned).map_err(|_| too_loud(gain))
     }
 
-    fn at_level(body: &Body, level: BodyLevel) -> Result<Body, AddError> {
-        Ok(Body { model: Self::model_at(&body.model, level)?.into_owned(), ..body.clone() })
+    /// A body that lands on the reference.
+    fn at_reference(body: &Body, level: BodyLevel) -> Result<Body, AddError> {
+        Ok(Body { model: Self::model_at(&body.model, level.own_gain)?.into_owned(), ..body.clone() })
     }
 
     /// Levels of the strokes on a surface that is added, and the surface. `body` is what it rings,
-    /// and the gain of its level.
+    /// and its level.
     pub(crate) fn surface(
         &mut self,
         config: &Config,
@@ -143,14 +156,15 @@ impl Levels {
             return Ok((surface, SurfaceLevels::default()));
         }
         let body = match body {
-            Some((body, level)) => Self::at_level(body, level)?,
+            Some((body, level)) => Self::at_reference(body, level)?,
             None => self.stand_in(config)?,
         };
         let rubs = surface.rubs().is_some();
         let (surface, trials) = self.surface_trials(config, surface, &body, probes)?;
         let levels = probes.iter().zip(trials).map(|((place, _), trial)| {
             let found = if rubs { 0.0 } else { trial.heard };
-            let heard = if rubs { 1.0 } else { config.levels.factor(AUDIO_REFERENCE, found, &mut self.heard) };
+            let heard =
+                if rubs { 1.0 } else { config.levels.factor(AUDIO_REFERENCE, found, &mut self.heard) };
             let felt = self.felt(config, &trial.felt);
             let fast = trial.fast.map(|rms| if rubs { 0.0 } else { heard * rms });
             (*place, StrokeLevel { heard, felt, fast })
@@ -176,7 +190,7 @@ impl Levels {
         let (shape, material, size_m) = STAND_IN;
         let body = Body::stock(shape, material, size_m).map_err(|_| AddError::Unknown("plate"))?;
         let level = self.body(config, &body)?;
-        Self::at_level(&body, level)
+        Self::at_reference(&body, level)
     }
 
     fn surface_trials(
@@ -186,21 +200,18 @@ impl Levels {
         body: &Body,
         probes: &[(Option<usize>, Probe)],
     ) -> Result<(Surface, Vec<StrokeTrial>), AddError> {
-        let content = trial::content(&mut surface, config.inner_rate_hz())?;
-        let key = content.map(|mut hasher| {
-            format!("{probes:?} {:?} {:?}", body.material, body.model.impulse_n_s).hash(&mut hasher);
-            for mode in &body.model.modes {
-                [mode.frequency_hz, mode.decay_per_s, mode.amplitude].map(f64::to_bits).hash(&mut hasher);
-            }
-            hasher.finish()
-        });
-        if let Some(trials) = key.and_then(|key| self.surfaces.get(&key)) {
+        let mut hasher = trial::content(&mut surface)?;
+        let rings = surface.body.is_some();
+        format!("{rings} {probes:?} {:?} {:?}", body.material, body.model.impulse_n_s).hash(&mut hasher);
+        for mode in &body.model.modes {
+            [mode.frequency_hz, mode.decay_per_s, mode.amplitude].map(f64::to_bits).hash(&mut hasher);
+        }
+        let key = hasher.finish();
+        if let Some(trials) = self.surfaces.get(&key) {
             return Ok((surface, trials.clone()));
         }
         let (surface, trials) = trial::of_surface(config, surface, body, probes)?;
-        if let Some(key) = key {
-            self.surfaces.insert(key, trials.clone());
-        }
+        self.surfaces.insert(key, trials.clone());
         Ok((surface, trials))
     }
 }

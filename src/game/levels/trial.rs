@@ -1,29 +1,34 @@
 //! Trials: what reference motions come to on a body, and on a surface with its body and each probe.
 
-use super::bench::{Bench, Motion, kinds};
+use super::bench::{Bench, Motion, RATE_HZ, kinds};
 use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::Touching;
+use crate::model::material::Material;
+use crate::model::probe::probe_by_name;
 use crate::model::surface::{Roughness, Surface};
-use crate::open::levels::{FROM, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power};
+use crate::open::levels::{
+    FROM, PAUSE_S, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power,
+};
 use asperity_dsp::micro_contact::Probe;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
-use asperity_texture::height_map::{Extent, HeightMap};
 use std::hash::{DefaultHasher, Hash};
 
 /// Forces of the strokes that tell how a surface grows louder, N, and their speed, m/s: from what
 /// weighs 10 g to what weighs 100 kg.
 pub(super) const FORCES_N: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 pub(super) const FAST_M_S: f64 = 1.0;
-/// Length of each, s.
+/// Length of each, and time between two of them, s: the next one is louder.
 const FAST_S: f64 = 0.2;
+const FAST_PAUSE_S: f64 = 0.02;
 
 /// What a body came to, at a gain of 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BodyTrial {
-    /// Rms under the reference stroke on a plain finish of its material.
-    pub(super) stroked: f64,
+    /// Rms where it is drawn over a plain ground as a rigid tool is: the same excitation for every
+    /// body.
+    pub(super) drawn: f64,
     /// Peak of one reference strike, and of fifty a second.
     pub(super) struck: f64,
     pub(super) burst: f64,
@@ -33,11 +38,12 @@ impl BodyTrial {
     pub(super) fn of(config: &Config, body: &Body) -> Result<Self, AddError> {
         let mut bench = Bench::new(config)?;
         let id = bench.scene.add_body(alone(body))?;
-        let surface = plain(body)?.on(id);
-        let surface = bench.scene.add_surface(surface)?;
-        let [stroked, _] = reference(&mut bench, Touching::on(surface), 0, [1.0; 2]);
+        let surface = bench.scene.add_surface(plain_ground()?)?;
+        let rigid = bench.scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
+        let drawn = Touching::on(surface).with(rigid).held_by(id);
+        let drawn = bench.stroke(drawn, 0, [1.0; 2], &along(WAYS[1])).heard.sqrt();
         let [struck, burst] = bench.strikes(id);
-        Ok(Self { stroked, struck, burst })
+        Ok(Self { drawn, struck, burst })
     }
 }
 
@@ -51,7 +57,8 @@ pub(super) struct StrokeTrial {
     pub(super) fast: [f64; FORCES_N.len()],
 }
 
-/// Renders over a surface that rings `body` with each probe, and gives the surface back.
+/// Renders over a surface with each probe, and gives the surface back. What rings is `body`: its own,
+/// or where it has none, what is held.
 pub(super) fn of_surface(
     config: &Config,
     mut surface: Surface,
@@ -60,7 +67,8 @@ pub(super) fn of_surface(
 ) -> Result<(Surface, Vec<StrokeTrial>), AddError> {
     let mut bench = Bench::new(config)?;
     let id = bench.scene.add_body(alone(body))?;
-    let own = surface.body.replace(id);
+    let own = surface.body;
+    surface.body = own.map(|_| id);
     let size_m = [surface.width_m, surface.height_m];
     let mut touchings = Vec::new();
     for (place, probe) in probes {
@@ -70,12 +78,15 @@ pub(super) fn of_surface(
     let surface = bench.scene.add_surface(surface)?;
     let mut trials = Vec::new();
     for probe in touchings {
-        let touching = Touching { probe, ..Touching::on(surface) };
+        let holder = own.is_none().then_some(id);
+        let touching = Touching { probe, holder, ..Touching::on(surface) };
         let channels = kinds(&config.actuators).len();
         let both: Vec<[f64; 2]> =
             (0..channels).map(|channel| reference(&mut bench, touching, channel, size_m)).collect();
         let fast = FORCES_N.map(|force_n| {
-            let motion = Motion { way: WAYS[1], speed_m_s: FAST_M_S, force_n, length_s: FAST_S };
+            let fast =
+                Motion { speed_m_s: FAST_M_S, length_s: FAST_S, pause_s: FAST_PAUSE_S, ..along(WAYS[1]) };
+            let motion = Motion { force_n, ..fast };
             bench.stroke(touching, 0, size_m, &motion).heard.sqrt()
         });
         trials.push(StrokeTrial {
@@ -93,39 +104,43 @@ pub(super) fn of_surface(
 
 /// Rms heard and felt of the reference stroke in all directions.
 fn reference(bench: &mut Bench, touching: Touching, channel: usize, size_m: [f64; 2]) -> [f64; 2] {
-    let powers = WAYS.map(|way| {
-        let motion = Motion {
-            way,
-            speed_m_s: REFERENCE_SPEED_M_S,
-            force_n: REFERENCE_FORCE_N,
-            length_s: STROKE_S,
-        };
-        bench.stroke(touching, channel, size_m, &motion)
-    });
+    let powers = WAYS.map(|way| bench.stroke(touching, channel, size_m, &along(way)));
     [powers.map(|power| power.heard), powers.map(|power| power.felt)]
         .map(|powers| mean_power(&powers).unwrap_or(0.0).sqrt())
 }
 
+/// The reference stroke.
+fn along(way: [f64; 2]) -> Motion {
+    Motion {
+        way,
+        speed_m_s: REFERENCE_SPEED_M_S,
+        force_n: REFERENCE_FORCE_N,
+        length_s: STROKE_S,
+        pause_s: PAUSE_S,
+    }
+}
+
 /// The body on the bench's only bus, as loud as its modes.
 fn alone(body: &Body) -> Body {
-    Body { bus: 0, gain: 1.0, strike_gain: None, least_time_s: 0.0, sends: Default::default(), ..body.clone() }
-}
-
-/// A plane with the finish of a body's material.
-fn plain(body: &Body) -> Result<Surface, AddError> {
-    let extent = Extent { width_m: 1.0, height_m: 1.0, relief_m: 0.0 };
-    let map = HeightMap::flat(extent, body.material.roughness).map_err(|_| AddError::Unknown("plane"))?;
-    Ok(Surface::from_map(map)?.of(body.material))
-}
-
-/// Content of a surface as far as strokes meet it, hashed; none where its samples depend on more
-/// than their places.
-pub(super) fn content(surface: &mut Surface, rate_hz: f64) -> Result<Option<DefaultHasher>, AddError> {
-    let properties = surface.properties();
-    if !properties.is_stateless {
-        return Ok(None);
+    Body {
+        bus: 0,
+        gain: 1.0,
+        strike_gain: None,
+        least_time_s: 0.0,
+        sends: Default::default(),
+        ..body.clone()
     }
-    surface.source.prepare(&Setup { sample_rate_hz: rate_hz, voices: 1, tip_radii_m: &[] })?;
+}
+
+/// A plane of stone.
+fn plain_ground() -> Result<Surface, AddError> {
+    Surface::flat(1.0, 1.0).map(|plane| plane.of(Material::STONE)).map_err(|_| AddError::Unknown("plane"))
+}
+
+/// Content of a surface as far as reference strokes meet it, hashed.
+pub(super) fn content(surface: &mut Surface) -> Result<DefaultHasher, AddError> {
+    let properties = surface.properties();
+    surface.source.prepare(&Setup { sample_rate_hz: RATE_HZ, voices: 1, tip_radii_m: &[] })?;
     let size_m = [surface.width_m, surface.height_m];
     let mut hasher = DefaultHasher::new();
     sampled(&mut *surface.source, size_m, &mut hasher);
@@ -140,7 +155,7 @@ pub(super) fn content(surface: &mut Surface, rate_hz: f64) -> Result<Option<Defa
     let rest = (compliance_m_n, excitation, stick_slip, frame);
     let source = (properties.band, properties.reach_m, properties.beyond);
     format!("{finish:?} {rest:?} {source:?}").hash(&mut hasher);
-    Ok(Some(hasher))
+    Ok(hasher)
 }
 
 /// Hashes heights and slopes along the ways of the reference stroke.

@@ -163,7 +163,7 @@ impl Scene {
             Made { slot: slot.rested(), of }
         } else {
             let loudest_db_spl = self.loudest_db_spl(body, strike_gain);
-            let at_level = Levels::model_at(heard, level)?;
+            let at_level = Levels::model_at(heard, level.gain)?;
             let slot = BodySlot::new(&at_level, mass_kg, loudest_db_spl, self.kernel, (rate, inner))?;
             Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
         };
@@ -182,11 +182,8 @@ impl Scene {
     /// where nobody knows, that of speech.
     fn loudest_db_spl(&self, body: &Body, strike_gain: f64) -> f64 {
         let loudest = body.model.modes.iter().fold(0.0, |most, mode| f64::max(most, mode.amplitude.abs()));
-        let known = self
-            .config
-            .audio
-            .get(body.bus)
-            .and_then(|bus| bus.db_spl(loudest * body.gain * strike_gain));
+        let known =
+            self.config.audio.get(body.bus).and_then(|bus| bus.db_spl(loudest * body.gain * strike_gain));
         known.map_or(LOUDEST_DB_SPL, |db| db.clamp(HEARD_DB_SPL.0, HEARD_DB_SPL.1))
     }
 
