@@ -364,7 +364,7 @@ fn strokes_that_clip_are_named_with_their_surface() {
         "{because:?}"
     );
     assert!(
-        ["relief_m", "Body::gain", "AudioBus::gain", "63 N"].iter().all(|word| told.contains(word)),
+        ["relief_m", "Body::gain", "AudioBus::gain", "63.00 N"].iter().all(|word| told.contains(word)),
         "{told}"
     );
     // Levels that are found hold the same crate.

@@ -31,7 +31,7 @@ pub enum ClippedBecause {
     },
     /// Strokes on a surface are the strongest of what was reported, and no blow explains it.
     #[error(
-        "strokes on surface {surface}, at up to {force_n:.3} N and {speed_m_s:.3} m/s, are {by_db:.0} dB over full scale; \
+        "strokes on surface {surface}, at up to {force_n:.2} N and {speed_m_s:.2} m/s, are {by_db:.0} dB over full scale; \
          lower relief_m or micro_relief_m of the surface, the gain of its body (Body::gain) or bus (AudioBus::gain) by \
          as much, or raise full_scale of the actuator that feels it"
     )]

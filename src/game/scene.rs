@@ -215,7 +215,9 @@ impl Scene {
         Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 
-    /// Adds a surface.
+    /// Adds a surface; where levels are [found](crate::LevelPolicy), a new one takes some ten
+    /// milliseconds a probe, and one of a content that was there or was
+    /// [prepared](Self::prepare) some ten microseconds.
     ///
     /// # Errors
     /// When every place is taken, its body is not in this scene, or a number is impossible.

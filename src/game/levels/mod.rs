@@ -21,9 +21,9 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use trial::{BodyTrial, FAST_M_S, FORCES_N, StrokeTrial};
 
-/// Rms towards which a stroke grows that nobody feels, full scale 1: −17 dB. Peaks are four times
-/// as high, and two bodies may sound.
-const LOUDEST_STROKE: f64 = 0.14;
+/// Rms towards which a stroke grows that nobody feels, full scale 1: −20 dB. Peaks are four times
+/// as high, two bodies may sound, and the growth of one stands for that of the other.
+const LOUDEST_STROKE: f64 = 0.1;
 /// Exponent of a stroke's growth with its speed.
 const SPEED_EXPONENT: f64 = 0.7;
 /// Bodies of which the trials are kept.
