@@ -21,12 +21,11 @@ use crate::game::silence::Reported;
 use crate::link::message::{Dead, Made, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
-use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::contact_sample::Place;
 use crate::model::error::AddError;
-use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::event::{ContactEvent, ContactId};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
@@ -35,7 +34,6 @@ use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::{SurfaceLevels, SurfaceSlot};
-use asperity_dsp::limits;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::TrajectoryDesign;
@@ -336,37 +334,6 @@ impl Scene {
         self.send(Message::RemoveSurface { slot: id.index() })?;
         self.surfaces.remove(id.0);
         self.note(|names| LogEdit::RemoveSurface { surface: names.surface(id) });
-        Ok(())
-    }
-
-    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few
-    /// milliseconds.
-    ///
-    /// # Errors
-    /// When there is no such channel, the gain is not in 0–10, or the queue is full.
-    pub fn set_haptic_gain(&mut self, actuator: Actuator, gain: f64) -> Result<(), AddError> {
-        let channel = usize::from(actuator.0);
-        if channel >= self.config.actuators.len() {
-            return Err(AddError::Unknown("actuator"));
-        }
-        let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
-        self.send(Message::SetHapticGain { channel, gain })?;
-        self.note(|_| LogEdit::HapticGain { actuator: actuator.0, gain });
-        Ok(())
-    }
-
-    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
-    ///
-    /// # Errors
-    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
-    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
-        self.checked_bus(bus)?;
-        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
-        self.send(Message::SetAudioGain { bus, gain })?;
-        self.config.audio[bus].gain = gain;
-        // How loud it is decides which modes are left out first.
-        self.rested.clear();
-        self.note(|_| LogEdit::AudioGain { bus, gain });
         Ok(())
     }
 
