@@ -91,6 +91,7 @@ pub mod open;
 pub mod parameters;
 mod prepared;
 mod rate;
+mod trial;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;

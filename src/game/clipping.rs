@@ -67,7 +67,7 @@ impl ClippedBecause {
 }
 
 impl ClippedBecause {
-    /// A blow that lasts longer than the reference strike peaks lower: by no more than what has left.
+    /// Peak of a blow that outlasts the reference strike, which is lower: at most what has left.
     pub(crate) fn hold(&mut self, most_db: f64) {
         if let Self::Blows { by_db, strike_gain, .. } = self
             && *by_db > most_db

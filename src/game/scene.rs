@@ -14,7 +14,7 @@ use crate::files::contact_log::LogEdit;
 use crate::game::clipping::Strongest;
 use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
-use crate::game::levels::{BodyLevel, Levels};
+use crate::game::levels::{BodyLevel, Levels, Trials};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
@@ -150,7 +150,7 @@ impl KnownBody {
 impl Scene {
     pub(crate) fn new(
         config: Config,
-        kernel: Level,
+        (kernel, trials): (Level, Trials),
         clock: Clock,
         to_audio: Sender<Message>,
         from_audio: Receiver<Dead>,
@@ -164,7 +164,7 @@ impl Scene {
             tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
             strike_gain: 1.0,
-            levels: Levels::default(),
+            levels: Levels::new(trials),
             strongest: Strongest::default(),
             reported: Reported::default(),
             motions: Motions::default(),

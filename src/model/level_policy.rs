@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 /// than a stroke of reference level may; a limiter of [`Config::live`](crate::Config::live) holds
 /// what several of them add up to.
 ///
-/// What carries state of its own from sample to sample (sand) is not rendered over, and friction
-/// that sticks and slips has the level of its body.
+/// Sand is not rendered over, because it would keep the print, and friction that sticks and slips
+/// has the level of its body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LevelPolicy {

@@ -37,51 +37,17 @@ use crate::files::scene_file::{SceneFile, Source};
 use crate::made::maker::felt_force_exponent;
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
-pub use crate::model::levels::Levels;
+pub use crate::model::levels::{
+    AUDIO_REFERENCE, HAPTIC_REFERENCE, Levels, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STRIKE_REFERENCE,
+};
+use crate::model::levels::{BURST, FROM, PAUSE_S, SETTLED_S, SILENT, STRIKE, STROKE_S, WAYS, mean_power};
 use crate::offline::{self, Options, Render};
 use asperity_dsp::limits::output as limits;
-
-/// Speed of the reference stroke, m/s.
-pub const REFERENCE_SPEED_M_S: f64 = 0.1;
-/// Pressing force of the reference stroke, N.
-pub const REFERENCE_FORCE_N: f64 = 1.0;
-/// Rms of a haptic channel under the reference stroke, full scale 1: −26 dB.
-pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
-/// Rms of an audio bus under the reference stroke, full scale 1: −32 dB.
-pub const AUDIO_REFERENCE: f64 = 0.025_118_864_315_095_8;
-/// Peak of a reference strike, full scale 1: −12 dB.
-pub const STRIKE_REFERENCE: f64 = 0.251_188_643_150_958;
-/// A reference strike, loss-free, with a ball of steel.
-pub(crate) struct Strike {
-    pub(crate) speed_m_s: f64,
-    pub(crate) mass_kg: f64,
-    pub(crate) radius_m: f64,
-}
-
-/// The reference strike of bodies.
-pub(crate) const STRIKE: Strike = Strike { speed_m_s: 0.5, mass_kg: 0.01, radius_m: 0.005 };
 
 /// Displacement at full scale where nothing says better, m.
 pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
 pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
-
-/// Length of each stroke, s, and the time from which on it is measured.
-pub(crate) const STROKE_S: f64 = 0.35;
-pub(crate) const SETTLED_S: f64 = 0.1;
-/// Strikes of a burst, and between two of them, s.
-pub(crate) const BURST: (u32, f64) = (50, 0.02);
-/// Between two strokes, s.
-pub(crate) const PAUSE_S: f64 = 0.1;
-/// Threshold of silence: rms in m, m/s² or the modes' own units.
-pub(crate) const SILENT: f64 = 1e-10;
-/// Beginning of a stroke, uv.
-pub(crate) const FROM: [f64; 2] = [0.31, 0.37];
-/// Directions of strokes, unit vectors of u and v: along threads and across them, and between.
-pub(crate) const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.6, -0.8], [0.0, 1.0], [0.8, 0.6]];
-/// The least power that one of them counts with, over the strongest: along its ribs a file is
-/// silent.
-const LEAST_POWER: f64 = 1.0 / 16.0;
 
 impl Levels {
     /// Levels of the scene; NaN where it has none.
@@ -322,13 +288,6 @@ impl Trials {
     fn struck(&self, render: &Render, samples: &[f32]) -> f64 {
         peak(samples, self.strikes_s, render.sample_rate_hz)
     }
-}
-
-/// Power of the mean level, in decibels, of strokes in all directions; none where all are silent.
-pub(crate) fn mean_power(powers: &[f64]) -> Option<f64> {
-    let least = LEAST_POWER * powers.iter().copied().fold(0.0, f64::max);
-    let logs = powers.iter().map(|power| power.max(least).ln()).sum::<f64>();
-    (least > 0.0).then(|| (logs / powers.len() as f64).exp())
 }
 
 /// Largest sample between two times.

@@ -47,7 +47,7 @@ impl SurfaceLevels {
 }
 
 impl StrokeLevel {
-    /// What is heard, and what the actuator plays.
+    /// Factors of sound, and of what the actuator plays.
     pub(crate) fn factors(&self, actuator: Option<usize>) -> (f64, f64) {
         let felt = actuator.and_then(|channel| self.felt.get(channel).copied());
         (self.heard, felt.unwrap_or(1.0))

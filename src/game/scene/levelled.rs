@@ -9,8 +9,8 @@ use crate::model::error::AddError;
 use crate::model::event::{ContactEvent, ContactId, Impact};
 use crate::model::id::BodyId;
 use crate::model::level_policy::LevelPolicy;
+use crate::model::levels::REFERENCE_SPEED_M_S;
 use crate::model::surface::Surface;
-use crate::open::levels::REFERENCE_SPEED_M_S;
 use crate::prepared::surface::SurfaceLevels;
 use asperity_dsp::micro_contact::Probe;
 

@@ -1,70 +1,49 @@
 //! Trials: what reference motions come to on a body, and on a surface with its body and each probe.
 
-use super::bench::{Bench, Motion, RATE_HZ, kinds};
+mod bench;
+
+use crate::game::levels::{BodyTrial, FAST_M_S, FORCES_N, Probes, StrokeTrial, SurfaceTrials, Trials, kinds};
 use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::Touching;
+use crate::model::levels::{
+    FROM, PAUSE_S, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power,
+};
 use crate::model::material::Material;
 use crate::model::probe::probe_by_name;
 use crate::model::surface::{Roughness, Surface};
-use crate::open::levels::{
-    FROM, PAUSE_S, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power,
-};
-use asperity_dsp::micro_contact::Probe;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
+use bench::{Bench, Motion, RATE_HZ};
 use std::hash::{DefaultHasher, Hash};
 
-/// Forces of the strokes that tell how a surface grows louder, N, and their speed, m/s: from what
-/// weighs 10 g to what weighs 100 kg.
-pub(super) const FORCES_N: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
-pub(super) const FAST_M_S: f64 = 1.0;
+/// Trials of every scene.
+pub(crate) const TRIALS: Trials = Trials { of_body, of_surface, content };
+
 /// Length of each, and time between two of them, s: the next one is louder.
 const FAST_S: f64 = 0.2;
 const FAST_PAUSE_S: f64 = 0.02;
 
-/// What a body came to, at a gain of 1.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BodyTrial {
-    /// Rms where it is drawn over a plain ground as a rigid tool is: the same excitation for every
-    /// body.
-    pub(super) drawn: f64,
-    /// Peak of one reference strike, and of fifty a second.
-    pub(super) struck: f64,
-    pub(super) burst: f64,
+/// Strikes a body and draws it over a plain ground.
+fn of_body(config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
+    let mut bench = Bench::new(config)?;
+    let id = bench.scene.add_body(alone(body))?;
+    let surface = bench.scene.add_surface(plain_ground()?)?;
+    let rigid = bench.scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
+    let drawn = Touching::on(surface).with(rigid).held_by(id);
+    let drawn = bench.stroke(drawn, 0, [1.0; 2], &along(WAYS[1])).heard.sqrt();
+    let [struck, burst] = bench.strikes(id);
+    Ok(BodyTrial { drawn, struck, burst })
 }
 
-impl BodyTrial {
-    pub(super) fn of(config: &Config, body: &Body) -> Result<Self, AddError> {
-        let mut bench = Bench::new(config)?;
-        let id = bench.scene.add_body(alone(body))?;
-        let surface = bench.scene.add_surface(plain_ground()?)?;
-        let rigid = bench.scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
-        let drawn = Touching::on(surface).with(rigid).held_by(id);
-        let drawn = bench.stroke(drawn, 0, [1.0; 2], &along(WAYS[1])).heard.sqrt();
-        let [struck, burst] = bench.strikes(id);
-        Ok(Self { drawn, struck, burst })
-    }
-}
-
-/// What a surface came to with one probe.
-#[derive(Debug, Clone)]
-pub(super) struct StrokeTrial {
-    /// Rms of its body under the reference stroke, and of each [kind](kinds) of channel.
-    pub(super) heard: f64,
-    pub(super) felt: Vec<f64>,
-    /// Rms of its body at each of [`FORCES_N`].
-    pub(super) fast: [f64; FORCES_N.len()],
-}
-
-/// Renders over a surface with each probe, and gives the surface back. What rings is `body`: its own,
-/// or where it has none, what is held.
-pub(super) fn of_surface(
+/// Renders over a surface with each probe, and gives the surface back. What rings is `body`: its
+/// own, or where it has none, what is held.
+fn of_surface(
     config: &Config,
     mut surface: Surface,
     body: &Body,
-    probes: &[(Option<usize>, Probe)],
-) -> Result<(Surface, Vec<StrokeTrial>), AddError> {
+    probes: &Probes,
+) -> Result<SurfaceTrials, AddError> {
     let mut bench = Bench::new(config)?;
     let id = bench.scene.add_body(alone(body))?;
     let own = surface.body;
@@ -138,7 +117,7 @@ fn plain_ground() -> Result<Surface, AddError> {
 }
 
 /// Content of a surface as far as reference strokes meet it, hashed.
-pub(super) fn content(surface: &mut Surface) -> Result<DefaultHasher, AddError> {
+fn content(surface: &mut Surface) -> Result<DefaultHasher, AddError> {
     let properties = surface.properties();
     surface.source.prepare(&Setup { sample_rate_hz: RATE_HZ, voices: 1, tip_radii_m: &[] })?;
     let size_m = [surface.width_m, surface.height_m];

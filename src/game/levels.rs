@@ -1,25 +1,22 @@
 //! Levels of a live scene: found by trials when bodies and surfaces are added, kept by content,
 //! applied where a body is struck and a surface stroked.
 
-mod bench;
-mod trial;
-
+use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::level_policy::LevelPolicy;
+use crate::model::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE, SILENT, STRIKE, STRIKE_REFERENCE};
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use crate::model::stock::Stock;
 use crate::model::surface::Surface;
-use crate::open::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE, SILENT, STRIKE, STRIKE_REFERENCE};
 use crate::prepared::surface::{StrokeLevel, SurfaceLevels};
 use asperity_dsp::micro_contact::Probe;
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::hash::{Hash, Hasher};
-use trial::{BodyTrial, FAST_M_S, FORCES_N, StrokeTrial};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Rms towards which a stroke grows that nobody feels, full scale 1: −20 dB. Peaks are four times
 /// as high, two bodies may sound, and the growth of one stands for that of the other.
@@ -32,6 +29,55 @@ const MOST_BODIES: usize = 64;
 const STRIKE_N_S: f64 = 2.0 * STRIKE.mass_kg * STRIKE.speed_m_s;
 /// Body under a surface that has none, for what is held and rings by strokes on it.
 const STAND_IN: (Stock, Material, f64) = (Stock::Plate, Material::CERAMIC, 0.14);
+
+/// Forces of the strokes that tell how a surface grows louder, N, and their speed, m/s: from what
+/// weighs 10 g to what weighs 100 kg.
+pub(crate) const FORCES_N: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
+pub(crate) const FAST_M_S: f64 = 1.0;
+
+/// Figures of a body at a gain of 1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyTrial {
+    /// Rms where it is drawn over a plain ground as a rigid tool is: the same excitation for every
+    /// body.
+    pub(crate) drawn: f64,
+    /// Peak of one reference strike, and of fifty a second.
+    pub(crate) struck: f64,
+    pub(crate) burst: f64,
+}
+
+/// Figures of a surface with one probe.
+#[derive(Debug, Clone)]
+pub(crate) struct StrokeTrial {
+    /// Rms of its body under the reference stroke, and of each [kind](kinds) of channel.
+    pub(crate) heard: f64,
+    pub(crate) felt: Vec<f64>,
+    /// Rms of its body at each of [`FORCES_N`].
+    pub(crate) fast: [f64; FORCES_N.len()],
+}
+
+/// A surface, and its figures with each probe.
+pub(crate) type SurfaceTrials = (Surface, Vec<StrokeTrial>);
+
+/// Places of probes, none for the engine's own, and the probes.
+pub(crate) type Probes = [(Option<usize>, Probe)];
+
+/// Trials, which need an engine of their own.
+#[derive(Clone, Copy)]
+pub(crate) struct Trials {
+    pub(crate) of_body: fn(&Config, &Body) -> Result<BodyTrial, AddError>,
+    /// Renders over a surface and gives it back.
+    pub(crate) of_surface: fn(&Config, Surface, &Body, &Probes) -> Result<SurfaceTrials, AddError>,
+    /// Hashes the content of a surface as far as reference strokes meet it.
+    pub(crate) content: fn(&mut Surface) -> Result<DefaultHasher, AddError>,
+}
+
+/// The first channel of each kind of output among those of an engine.
+pub(crate) fn kinds(channels: &[ActuatorSettings]) -> Vec<usize> {
+    let first = |kind| channels.iter().position(|channel| channel.output == kind);
+    let kinds = [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential];
+    kinds.into_iter().filter_map(first).collect()
+}
 
 /// Level of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +94,8 @@ pub(crate) struct BodyLevel {
 }
 
 /// Trials of a scene, and the levels that its things share.
-#[derive(Default)]
 pub(crate) struct Levels {
+    trials: Trials,
     body: Option<f64>,
     strikes: Option<f64>,
     heard: Option<f64>,
@@ -89,6 +135,12 @@ impl StrokeLevel {
 }
 
 impl Levels {
+    /// Nothing found yet.
+    pub(crate) fn new(trials: Trials) -> Self {
+        let (bodies, surfaces, felt) = Default::default();
+        Self { trials, body: None, strikes: None, heard: None, felt, bodies, surfaces }
+    }
+
     /// Level of a body that is added.
     pub(crate) fn body(&mut self, config: &Config, body: &Body) -> Result<BodyLevel, AddError> {
         let given = BodyLevel::given(body);
@@ -121,7 +173,7 @@ impl Levels {
         if let Some((_, _, trial)) = known {
             return Ok(*trial);
         }
-        let trial = BodyTrial::of(config, body)?;
+        let trial = (self.trials.of_body)(config, body)?;
         if self.bodies.len() == MOST_BODIES {
             self.bodies.remove(0);
         }
@@ -149,7 +201,7 @@ impl Levels {
         config: &Config,
         surface: Surface,
         body: Option<(&Body, BodyLevel)>,
-        probes: &[(Option<usize>, Probe)],
+        probes: &Probes,
     ) -> Result<(Surface, SurfaceLevels), AddError> {
         // A stroke would leave its print.
         if config.levels == LevelPolicy::AsGiven || surface.properties().picture.is_some() {
@@ -175,8 +227,8 @@ impl Levels {
 
     /// Factor of each channel; `found` is by kind.
     fn felt(&mut self, config: &Config, found: &[f64]) -> Box<[f64]> {
-        let kinds = bench::kinds(&config.actuators);
-        let factor = |(channel, settings): (usize, &crate::model::actuator::ActuatorSettings)| {
+        let kinds = kinds(&config.actuators);
+        let factor = |(channel, settings): (usize, &ActuatorSettings)| {
             let kind = kinds.iter().position(|first| config.actuators[*first].output == settings.output);
             let found = kind.map_or(0.0, |kind| found[kind]);
             let found = if found > SILENT { found } else { 0.0 };
@@ -198,9 +250,9 @@ impl Levels {
         config: &Config,
         mut surface: Surface,
         body: &Body,
-        probes: &[(Option<usize>, Probe)],
-    ) -> Result<(Surface, Vec<StrokeTrial>), AddError> {
-        let mut hasher = trial::content(&mut surface)?;
+        probes: &Probes,
+    ) -> Result<SurfaceTrials, AddError> {
+        let mut hasher = (self.trials.content)(&mut surface)?;
         let rings = surface.body.is_some();
         format!("{rings} {probes:?} {:?} {:?}", body.material, body.model.impulse_n_s).hash(&mut hasher);
         for mode in &body.model.modes {
@@ -210,7 +262,7 @@ impl Levels {
         if let Some(trials) = self.surfaces.get(&key) {
             return Ok((surface, trials.clone()));
         }
-        let (surface, trials) = trial::of_surface(config, surface, body, probes)?;
+        let (surface, trials) = (self.trials.of_surface)(config, surface, body, probes)?;
         self.surfaces.insert(key, trials.clone());
         Ok((surface, trials))
     }

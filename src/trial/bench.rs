@@ -1,9 +1,12 @@
 //! Bench: a small engine that renders reference motions, and what they come to.
 
 use crate::audio::renderer::Renderer;
-use crate::engine::Engine;
+use crate::game::clock::Clock;
+use crate::game::levels::kinds;
 use crate::game::scene::Scene;
-use crate::model::actuator::{ActuatorSettings, Quantity};
+use crate::link::ring;
+use crate::link::stats::Counters;
+use crate::model::actuator::ActuatorSettings;
 use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
@@ -12,9 +15,12 @@ use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
 use crate::model::id::BodyId;
 use crate::model::level_policy::LevelPolicy;
+use crate::model::levels::{BURST, FROM, PAUSE_S, SETTLED_S, STRIKE, Strike};
 use crate::model::material::Material;
-use crate::open::levels::{self, BURST, FROM, PAUSE_S, SETTLED_S};
+use crate::prepared::probe::PreparedProbe;
 use crate::rate::design;
+use crate::trial::TRIALS;
+use std::sync::Arc;
 
 /// Rate of trials, Hz.
 pub(super) const RATE_HZ: f64 = 44_100.0;
@@ -50,13 +56,6 @@ pub(super) struct Bench {
     haptic: Vec<Vec<f32>>,
 }
 
-/// The first channel of each kind of output among those of an engine.
-pub(super) fn kinds(channels: &[ActuatorSettings]) -> Vec<usize> {
-    let first = |kind| channels.iter().position(|channel| channel.output == kind);
-    let kinds = [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential];
-    kinds.into_iter().filter_map(first).collect()
-}
-
 impl Bench {
     /// For the scene of `config`: in SI units, with nothing behind what it plays.
     pub(super) fn new(config: &Config) -> Result<Self, AddError> {
@@ -86,7 +85,15 @@ impl Bench {
             threads: 1,
             ..config.clone()
         };
-        let Engine { scene, renderer, .. } = config.build().map_err(design)?;
+        let (kernel, inner_hz) = (config.kernel().map_err(design)?, config.inner_rate_hz());
+        let probe = PreparedProbe::new(&config.probe, &config.probe, config.integrator, inner_hz, kernel)?;
+        let counters = Arc::new(Counters::new(1));
+        let (to_audio, from_game) = ring::channel(config.queue_capacity);
+        let (to_game, from_audio) = ring::channel(config.most_to_free());
+        let renderer = Renderer::new(&config, kernel, probe, from_game, to_game, counters.clone());
+        let renderer = renderer.map_err(design)?;
+        let clock = Clock::new(config.clock, inner_hz);
+        let scene = Scene::new(config, (kernel, TRIALS), clock, to_audio, from_audio, counters);
         Ok(Self {
             rate_hz: renderer.sample_rate_hz(),
             at_s: 0.0,
@@ -171,7 +178,7 @@ impl Bench {
 
 /// The reference strike of the level policy.
 pub(super) fn reference_strike(body: BodyId) -> Impact {
-    let levels::Strike { speed_m_s, mass_kg, radius_m } = levels::STRIKE;
+    let Strike { speed_m_s, mass_kg, radius_m } = STRIKE;
     Impact { speed_m_s, mass_kg, radius_m, striker: Material::STEEL, restitution: 1.0, ..Impact::on(body) }
 }
 
