@@ -11,6 +11,7 @@ use crate::model::config::Config;
 use crate::model::error::ConfigError;
 use crate::model::levels::Levels;
 use crate::prepared::probe::{PreparedProbe, remark};
+use crate::trial::TRIALS;
 use asperity_texture::sand::SandWorker;
 use std::sync::Arc;
 
@@ -67,7 +68,7 @@ impl Config {
         let (to_game, from_audio) = ring::channel(self.most_to_free());
         let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
-        let scene = Scene::new(self, kernel, clock, to_audio, from_audio, counters);
+        let scene = Scene::new(self, (kernel, TRIALS), clock, to_audio, from_audio, counters);
         Ok(Engine {
             scene,
             renderer,

@@ -50,7 +50,8 @@
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
 //! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
 //! | a sound card | [`live`] |
-//! | silence | [`Scene::why_silent`] |
+//! | silence, too much | [`Scene::why_silent`], [`Scene::why_clipped`] |
+//! | levels | [`LevelPolicy`] |
 //!
 //! # Crates
 //!
@@ -90,6 +91,7 @@ pub mod open;
 pub mod parameters;
 mod prepared;
 mod rate;
+mod trial;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;
@@ -97,6 +99,7 @@ pub use engine::Engine;
 pub use files::actuator_profile::{ActuatorPreset, PresetError};
 pub use files::shapes_file::{load_shapes, parse_shapes};
 pub use files::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes, shapes_to_file};
+pub use game::clipping::ClippedBecause;
 pub use game::contradiction::{Contradiction, Likely};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
@@ -119,6 +122,7 @@ pub use model::event::{
 pub use model::excitation::{Excitation, Exciter};
 pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
+pub use model::level_policy::LevelPolicy;
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};

@@ -90,7 +90,8 @@ impl Scene {
             renderer.install(self.prepared_probe(ProbeId(place), probe)?);
         }
         for (id, body) in &self.given {
-            renderer.install(self.prepared_body(*id, body, None)?.0);
+            let level = self.level_of(*id);
+            renderer.install(self.prepared_body(*id, body, level, None)?.0);
         }
         Ok(New { renderer, to_audio, from_audio })
     }
@@ -100,7 +101,7 @@ impl Scene {
         let mut old = old.hand_over();
         let mut lost = Vec::new();
         for (id, slot) in std::mem::take(&mut old.surfaces) {
-            match self.prepared_surface(id, slot.surface) {
+            match self.prepared_surface(id, slot.surface, slot.levels) {
                 Ok((message, _)) => renderer.install(message),
                 Err(reason) => {
                     self.surfaces.remove(id.0);
@@ -127,7 +128,7 @@ struct New {
     from_audio: ring::Receiver<crate::link::message::Dead>,
 }
 
-fn design(error: ConfigError) -> AddError {
+pub(crate) fn design(error: ConfigError) -> AddError {
     match error {
         ConfigError::Design(error) => AddError::Design(error),
         ConfigError::Kernel { .. } => AddError::Unknown("kernel"),

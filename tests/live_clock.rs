@@ -30,7 +30,7 @@ impl Game {
     fn new() -> Self {
         let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };
         let asperity::Engine { mut scene, renderer, .. } =
-            Config { actuators: vec![si], ..Config::live(RATE_HZ) }.build().unwrap();
+            Config { actuators: vec![si], ..common::raw_live(RATE_HZ) }.build().unwrap();
         let body = scene.add_body(bar()).unwrap();
         let surface = scene.add_surface(plate(0.8)).unwrap();
         let (haptic, audio) = (Vec::new(), Vec::new());

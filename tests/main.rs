@@ -38,6 +38,7 @@ mod levels_as_shipped;
 mod levels_over_the_grid;
 mod live_clock;
 mod live_is_offline;
+mod live_levels;
 mod many_fingers;
 mod materials;
 mod matte_and_shiny;

@@ -38,7 +38,7 @@ struct Game {
 impl Game {
     fn new() -> Self {
         let buses = vec![asperity::AudioBus::default(); 3];
-        let config = Config { audio: buses, ..Config::live(RATE_HZ) };
+        let config = Config { audio: buses, ..common::raw_live(RATE_HZ) };
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let ground = scene.add_body(bar()).unwrap();
         let surface = scene.add_surface(plate(0.8).on(ground)).unwrap();
@@ -164,7 +164,7 @@ fn what_is_removed_right_after_a_strike_rings_out_as_if_it_had_stayed() {
         stock(Stock::Block, Material::WOOD, 0.1),
     ] {
         let heard = [0, 1, 2].map(|does| {
-            let Engine { mut scene, mut renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+            let Engine { mut scene, mut renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
             let id = scene.add_body(shape.clone().gain(0.5)).unwrap();
             scene.report(0.0, strike(id)).unwrap();
             match does {
@@ -188,7 +188,7 @@ fn what_is_removed_right_after_a_strike_rings_out_as_if_it_had_stayed() {
 
 #[test]
 fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
-    let Engine { mut scene, mut renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+    let Engine { mut scene, mut renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
     let mut audio = Vec::new();
     let mut play = |audio: &mut Vec<f32>, blocks: usize| {
         for _ in 0..blocks {
@@ -242,7 +242,7 @@ fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
 
 #[test]
 fn a_stock_body_that_was_there_before_costs_the_game_next_to_nothing() {
-    let Engine { mut scene, mut renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+    let Engine { mut scene, mut renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
     let (mut took, mut fresh) = (Vec::new(), Vec::new());
     for tick in 0..300 {
         let began = Instant::now();

@@ -41,7 +41,7 @@ struct Game {
 impl Game {
     /// Strikes so many times a second, 0 for never; and strokes, or does not.
     fn new(strikes_a_second: u32, strokes: bool) -> Self {
-        let Engine { mut scene, renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+        let Engine { mut scene, renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
         let block = scene.add_body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()).unwrap();
         let surface = scene.add_surface(plate(0.8).on(block)).unwrap();
         let strikes_every = 60u32.checked_div(strikes_a_second).unwrap_or(u32::MAX);
@@ -176,7 +176,7 @@ fn a_recording_over_a_gap_holds_the_strikes_that_were_played() {
 
 #[test]
 fn a_device_that_is_lost_and_comes_back_does_not_bang() {
-    let Engine { mut scene, renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+    let Engine { mut scene, renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
     let block = scene.add_body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()).unwrap();
     let mut device = Interleaver::new(renderer, ChannelMap::stereo_then_haptics(1));
     let began = Instant::now();

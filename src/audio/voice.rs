@@ -181,6 +181,9 @@ impl Voice {
             self.excite(now, seat, scratch);
         }
         self.phase = self.fades.run(self.phase, self.role.gain, now.shared, now.n, &mut scratch.out);
+        if let Some(level) = seat.current().and_then(|slot| slot.levels.of(self.role.probe)) {
+            scratch.out.level(now.n, level.factors(self.role.actuator));
+        }
         self.show(now, seat, scratch, tap);
         self.finish(now, scratch);
         pressing

@@ -1,7 +1,9 @@
 //! The game thread's half: takes resources and reports, checks them, stamps them, sends them.
 
+pub(crate) mod clipping;
 pub(crate) mod clock;
 pub(crate) mod contradiction;
+pub(crate) mod levels;
 pub(crate) mod places;
 pub(crate) mod recording;
 pub(crate) mod scene;

@@ -3,6 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 mod bodies;
+mod levelled;
 mod ports;
 mod quiet;
 mod recorded;
@@ -12,20 +13,21 @@ mod touched;
 
 use self::spin::Spin;
 use crate::files::contact_log::LogEdit;
+use crate::game::clipping::Strongest;
 use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
+use crate::game::levels::{BodyLevel, Levels, Trials};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
 use crate::link::message::{Dead, Made, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
-use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::contact_sample::Place;
 use crate::model::error::AddError;
-use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::event::{ContactEvent, ContactId};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
@@ -33,8 +35,7 @@ use crate::model::strike_field::StrikeField;
 use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
-use crate::prepared::surface::SurfaceSlot;
-use asperity_dsp::limits;
+use crate::prepared::surface::{SurfaceLevels, SurfaceSlot};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::TrajectoryDesign;
@@ -84,6 +85,10 @@ pub struct Scene {
     /// Gain of impacts on a body that has none of its own: what the level policy has found for
     /// those of the scene file.
     pub(crate) strike_gain: f64,
+    /// Levels that are found when bodies and surfaces are added.
+    levels: Levels,
+    /// For [`Scene::why_clipped`].
+    strongest: Strongest,
     /// For [`Scene::why_silent`].
     reported: Reported,
     /// Motions that the reports give twice.
@@ -103,6 +108,11 @@ struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
     spin: Spin,
+    /// Place of its probe; none = the engine's own.
+    probe: Option<usize>,
+    /// The gain that the game has told, and whether nobody feels it.
+    gain: f64,
+    unfelt: bool,
 }
 
 /// Surface as the game half knows it.
@@ -118,6 +128,7 @@ pub(crate) struct KnownSurface {
     body: Option<BodyId>,
     /// True where contacts on it stick and slip.
     rubs: bool,
+    levels: SurfaceLevels,
 }
 
 /// Body as the game half knows it.
@@ -129,6 +140,7 @@ pub(crate) struct KnownBody {
     field: Option<Arc<StrikeField>>,
     /// Its mass is known.
     weighs: bool,
+    level: BodyLevel,
 }
 
 impl KnownBody {
@@ -141,7 +153,7 @@ impl KnownBody {
 impl Scene {
     pub(crate) fn new(
         config: Config,
-        kernel: Level,
+        (kernel, trials): (Level, Trials),
         clock: Clock,
         to_audio: Sender<Message>,
         from_audio: Receiver<Dead>,
@@ -155,6 +167,8 @@ impl Scene {
             tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
             strike_gain: 1.0,
+            levels: Levels::new(trials),
+            strongest: Strongest::default(),
             reported: Reported::default(),
             motions: Motions::default(),
             held: Vec::new(),
@@ -202,7 +216,9 @@ impl Scene {
         Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 
-    /// Adds a surface.
+    /// Adds a surface; where levels are [found](crate::LevelPolicy), a new one takes some ten
+    /// milliseconds a probe, and one of a content that was there or was
+    /// [prepared](Self::prepare) some ten microseconds.
     ///
     /// # Errors
     /// When every place is taken, its body is not in this scene, or a number is impossible.
@@ -229,7 +245,8 @@ impl Scene {
     }
 
     fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
-        let (message, known) = self.prepared_surface(id, surface)?;
+        let (surface, levels) = self.levelled_surface(surface)?;
+        let (message, known) = self.prepared_surface(id, surface, levels)?;
         self.send(message)?;
         self.surfaces.set(id.0, known);
         Ok(())
@@ -240,6 +257,7 @@ impl Scene {
         &self,
         id: SurfaceId,
         surface: Surface,
+        levels: SurfaceLevels,
     ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
         surface.source.prepare(&Setup {
@@ -253,6 +271,7 @@ impl Scene {
             lowest_mode_hz: f64::INFINITY,
             field: None,
             weighs: false,
+            level: BodyLevel::SILENT,
         };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let rubs = surface.rubs().is_some();
@@ -284,10 +303,11 @@ impl Scene {
             stroking,
             overlay,
             period_m,
+            levels: levels.clone(),
         });
         Ok((
             Message::SetSurface { id, surface },
-            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs },
+            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs, levels },
         ))
     }
 
@@ -317,37 +337,6 @@ impl Scene {
         self.send(Message::RemoveSurface { slot: id.index() })?;
         self.surfaces.remove(id.0);
         self.note(|names| LogEdit::RemoveSurface { surface: names.surface(id) });
-        Ok(())
-    }
-
-    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few
-    /// milliseconds.
-    ///
-    /// # Errors
-    /// When there is no such channel, the gain is not in 0–10, or the queue is full.
-    pub fn set_haptic_gain(&mut self, actuator: Actuator, gain: f64) -> Result<(), AddError> {
-        let channel = usize::from(actuator.0);
-        if channel >= self.config.actuators.len() {
-            return Err(AddError::Unknown("actuator"));
-        }
-        let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
-        self.send(Message::SetHapticGain { channel, gain })?;
-        self.note(|_| LogEdit::HapticGain { actuator: actuator.0, gain });
-        Ok(())
-    }
-
-    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
-    ///
-    /// # Errors
-    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
-    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
-        self.checked_bus(bus)?;
-        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
-        self.send(Message::SetAudioGain { bus, gain })?;
-        self.config.audio[bus].gain = gain;
-        // How loud it is decides which modes are left out first.
-        self.rested.clear();
-        self.note(|_| LogEdit::AudioGain { bus, gain });
         Ok(())
     }
 

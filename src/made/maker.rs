@@ -57,7 +57,7 @@ impl<'a> Maker<'a> {
         }
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
         let body = Body::new(model).of(material).on_bus(bus);
-        let strike_gain = entry.strike_gain.unwrap_or(strike_gain);
+        let strike_gain = Some(entry.strike_gain.unwrap_or(strike_gain));
         let least_time_s = entry.least_time_s.unwrap_or(0.0);
         Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, least_time_s, ..body })
     }

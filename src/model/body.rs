@@ -27,7 +27,8 @@ pub struct Body {
     pub(crate) material: Material,
     pub(crate) bus: usize,
     pub(crate) gain: f64,
-    pub(crate) strike_gain: f64,
+    /// None: by the level policy, 1 where there is none.
+    pub(crate) strike_gain: Option<f64>,
     pub(crate) mass_kg: Option<f64>,
     pub(crate) least_time_s: f64,
     pub(crate) sends: Sends,
@@ -45,7 +46,7 @@ impl Body {
             material: Self::DEFAULT_MATERIAL,
             bus: 0,
             gain: 1.0,
-            strike_gain: 1.0,
+            strike_gain: None,
             mass_kg: None,
             least_time_s: 0.0,
             sends: Sends::default(),
@@ -97,10 +98,11 @@ impl Body {
 
     /// Gain of impacts beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is
     /// then far above a stroke. A scene file that leaves it out has the [level
-    /// policy](crate::open::levels) find it.
+    /// policy](crate::open::levels) find it, and so has a scene with [levels that are
+    /// found](crate::LevelPolicy).
     #[must_use]
     pub fn strike_gain(mut self, gain: f64) -> Self {
-        self.strike_gain = gain;
+        self.strike_gain = Some(gain);
         self
     }
 }

@@ -5,6 +5,7 @@ use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::clock_mode::ClockMode;
 use crate::model::error::ConfigError;
 use crate::model::inner_rate::InnerRate;
+use crate::model::level_policy::LevelPolicy;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, Probe};
@@ -55,6 +56,9 @@ pub struct Config {
     /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By
     /// default one with gain 1, without limiter.
     pub audio: Vec<AudioBus>,
+    /// Origin of the levels of bodies and surfaces that are added; as their numbers say unless told
+    /// otherwise, shared levels that are found with [`Config::live`].
+    pub levels: LevelPolicy,
     /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force
     /// times speed times importance.
     pub max_contacts: usize,
@@ -108,6 +112,7 @@ impl Default for Config {
             probe: Probe::default(),
             actuators: vec![ActuatorSettings::default()],
             audio: vec![AudioBus::default()],
+            levels: LevelPolicy::default(),
             max_contacts: 64,
             max_probes: 64,
             max_ports: 16,
@@ -125,12 +130,21 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Settings for a game that runs now: the device's rate, and a clock that follows the game
-    /// through pauses, restarts, slow motion and bursts of ticks ([`ClockMode::LIVE`]). The
-    /// default's exact clock is for offline renders.
+    /// Settings for a game that runs now: the device's rate; a clock that follows the game through
+    /// pauses, restarts, slow motion and bursts of ticks ([`ClockMode::LIVE`]); levels that are
+    /// found when bodies and surfaces are added ([`LevelPolicy::Shared`]), and limiters behind
+    /// them, which `AudioBus::default()` and `ActuatorSettings::default()` leave out. The default's
+    /// exact clock and levels as given are for offline renders.
     #[must_use]
     pub fn live(sample_rate_hz: f64) -> Self {
-        Self { sample_rate_hz, clock: ClockMode::LIVE, ..Self::default() }
+        Self {
+            sample_rate_hz,
+            clock: ClockMode::LIVE,
+            levels: LevelPolicy::Shared,
+            actuators: vec![ActuatorSettings { limit_peaks: true, ..ActuatorSettings::default() }],
+            audio: vec![AudioBus { limit: true, ..AudioBus::default() }],
+            ..Self::default()
+        }
     }
 
     /// Rate at which the engine runs inside, Hz: [`Self::oversampling`] times the smallest multiple

@@ -285,6 +285,11 @@ impl ContactEvent {
 }
 
 impl Impact {
+    /// Impulse that it gives, its gain counted, N·s.
+    pub(crate) fn impulse_n_s(&self) -> f64 {
+        self.gain * (self.mass_kg * self.speed_m_s * (1.0 + self.restitution))
+    }
+
     /// A loss-free blow of a steel ball of 1 cm and 4 g at 1 m/s: a value to begin with, for the
     /// fields that a game does not know.
     #[must_use]

@@ -16,6 +16,7 @@ pub(crate) mod excitation;
 pub(crate) mod frame;
 pub(crate) mod id;
 pub(crate) mod inner_rate;
+pub(crate) mod level_policy;
 pub(crate) mod levels;
 pub(crate) mod material;
 pub(crate) mod modal_model;

@@ -37,41 +37,17 @@ use crate::files::scene_file::{SceneFile, Source};
 use crate::made::maker::felt_force_exponent;
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
-pub use crate::model::levels::Levels;
+pub use crate::model::levels::{
+    AUDIO_REFERENCE, HAPTIC_REFERENCE, Levels, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STRIKE_REFERENCE,
+};
+use crate::model::levels::{BURST, FROM, PAUSE_S, SETTLED_S, SILENT, STRIKE, STROKE_S, WAYS, mean_power};
 use crate::offline::{self, Options, Render};
 use asperity_dsp::limits::output as limits;
 
-/// Speed of the reference stroke, m/s.
-pub const REFERENCE_SPEED_M_S: f64 = 0.1;
-/// Pressing force of the reference stroke, N.
-pub const REFERENCE_FORCE_N: f64 = 1.0;
-/// Rms of a haptic channel under the reference stroke, full scale 1: −26 dB.
-pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
-/// Rms of an audio bus under the reference stroke, full scale 1: −32 dB.
-pub const AUDIO_REFERENCE: f64 = 0.025_118_864_315_095_8;
-/// Peak of a reference strike, full scale 1: −12 dB.
-pub const STRIKE_REFERENCE: f64 = 0.251_188_643_150_958;
 /// Displacement at full scale where nothing says better, m.
 pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
 pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
-
-/// Length of each stroke, s, and the time from which on it is measured.
-const STROKE_S: f64 = 0.35;
-const SETTLED_S: f64 = 0.1;
-/// Strikes of a burst, and between two of them, s.
-const BURST: (u32, f64) = (50, 0.02);
-/// Between two strokes, s.
-const PAUSE_S: f64 = 0.1;
-/// Threshold of silence: rms in m, m/s² or the modes' own units.
-const SILENT: f64 = 1e-10;
-/// Beginning of a stroke, uv.
-const FROM: [f64; 2] = [0.31, 0.37];
-/// Directions of strokes, unit vectors of u and v: along threads and across them, and between.
-const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.6, -0.8], [0.0, 1.0], [0.8, 0.6]];
-/// The least power that one of them counts with, over the strongest: along its ribs a file is
-/// silent.
-const LEAST_POWER: f64 = 1.0 / 16.0;
 
 impl Levels {
     /// Levels of the scene; NaN where it has none.
@@ -153,7 +129,7 @@ struct Burst {
 
 impl Burst {
     /// Between this one and the next, s: what rings is damped in it.
-    const PAUSE_S: f64 = 0.15;
+    pub(crate) const PAUSE_S: f64 = 0.15;
 
     fn length_s() -> f64 {
         f64::from(BURST.0) * BURST.1
@@ -303,9 +279,7 @@ impl Trials {
         };
         let means = self.strokes.chunks(WAYS.len()).filter_map(|strokes| {
             let powers: Vec<f64> = strokes.iter().filter_map(power).collect();
-            let least = LEAST_POWER * powers.iter().copied().fold(0.0, f64::max);
-            let logs = powers.iter().map(|power| power.max(least).ln()).sum::<f64>();
-            (least > 0.0).then(|| (logs / powers.len() as f64).exp())
+            mean_power(&powers)
         });
         means.fold(0.0, f64::max).sqrt()
     }
@@ -336,9 +310,9 @@ fn strike(body: &str) -> LogEvent {
     LogEvent::Impact {
         body: body.to_owned(),
         other: None,
-        speed_m_s: 0.5,
-        mass_kg: 0.01,
-        radius_m: 0.005,
+        speed_m_s: STRIKE.speed_m_s,
+        mass_kg: STRIKE.mass_kg,
+        radius_m: STRIKE.radius_m,
         striker: Striker::Preset("steel".to_owned()),
         restitution: 1.0,
         position: 0,

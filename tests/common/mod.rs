@@ -7,13 +7,20 @@ pub mod strokes;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};
-use asperity::{ActuatorSettings, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap};
+use asperity::{
+    ActuatorSettings, ClockMode, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap,
+};
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
 use std::collections::HashMap;
 
 /// Side of the test surfaces, m.
 pub const SIDE_M: f64 = 0.14;
+
+/// A live engine in raw units, without limiters.
+pub fn raw_live(sample_rate_hz: f64) -> Config {
+    Config { sample_rate_hz, clock: ClockMode::LIVE, ..Config::default() }
+}
 
 /// A grating along u: height = amplitude · sin(2π u / wavelength), 16 texels or more a period.
 pub fn grating(wavelength_m: f64, amplitude_m: f64) -> Surface {

@@ -2,8 +2,8 @@
 //! masses and speeds of mechanics.
 
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, Engine, Impact, Material, Renderer, Scene,
-    Stock, Surface, SurfaceId,
+    Actuator, Body, BodyId, Config, ContactEvent, ContactId, Engine, Impact, LevelPolicy, Material, Renderer,
+    Scene, Stock, Surface, SurfaceId,
 };
 use asperity_rapier::{Adapter, Kind, Mapping, Thing};
 use rapier3d::prelude::*;
@@ -26,7 +26,8 @@ struct World {
 impl World {
     /// A floor of 4 m × 4 m whose top lies at height 0.
     fn new() -> Self {
-        let Engine { mut scene, renderer, .. } = Config::live(48_000.0).build().unwrap();
+        let Engine { mut scene, renderer, .. } =
+            Config { levels: LevelPolicy::AsGiven, ..Config::live(48_000.0) }.build().unwrap();
         let mut physics = PhysicsWorld::default();
         physics.integration_parameters.contact_recycling = false;
         let slab = scene.add_body(Body::stock(Stock::Plate, Material::STONE, 0.5).unwrap()).unwrap();

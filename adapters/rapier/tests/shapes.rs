@@ -3,8 +3,8 @@
 //! lands.
 
 use asperity::{
-    Actuator, Body, Config, ContactEvent, Engine, Impact, Material, Renderer, Scene, Stock, Surface,
-    SurfaceId,
+    Actuator, Body, Config, ContactEvent, Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock,
+    Surface, SurfaceId,
 };
 use asperity_rapier::{Adapter, Kind, Mapping, Notice, Thing};
 use rapier3d::prelude::*;
@@ -29,6 +29,7 @@ impl World {
     fn new(mapping: Mapping) -> Self {
         let mut config = Config::live(48_000.0);
         config.audio[0].limit = false;
+        config.levels = LevelPolicy::AsGiven;
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let mut physics = PhysicsWorld::default();
         physics.integration_parameters.contact_recycling = false;

@@ -7,7 +7,7 @@ use crate::null::{self, NullOutput};
 use crate::output::Output;
 use crate::touch::Touch;
 use asperity::files::contact_log::Names;
-use asperity::{ActuatorSettings, AudioBus, Config, Engine, Renderer};
+use asperity::{Config, Engine, Renderer};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
@@ -27,7 +27,8 @@ pub enum TouchSystems {
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
     /// Configuration of the engine; a device's rate wins over its own. By default live, 48 kHz, one
-    /// bus at a gain of 0.1 and one haptic channel of 0.1 mm at full scale, with their limiters on.
+    /// bus and one haptic channel with limiters, and levels that are found as bodies and surfaces
+    /// come ([`Config::live`]).
     pub config: Config,
     /// Destination of sound.
     pub output: Output,
@@ -35,11 +36,7 @@ pub struct AsperityPlugin {
 
 impl Default for AsperityPlugin {
     fn default() -> Self {
-        // Blows of a physics engine reach 20 times full scale where they are heard, more where they
-        // are felt, and a sound card clips at 1.
-        let audio = vec![AudioBus { gain: 0.1, limit: true, ..AudioBus::default() }];
-        let actuators = vec![ActuatorSettings { limit_peaks: true, ..ActuatorSettings::default() }];
-        Self { config: Config { audio, actuators, ..Config::live(48_000.0) }, output: Output::default() }
+        Self { config: Config::live(48_000.0), output: Output::default() }
     }
 }
 

@@ -79,4 +79,10 @@ impl VoiceBlock {
         self.impulse_n_s[i] *= gain;
         self.rub.normal_force_n[i] *= gain;
     }
+
+    /// Brings what is heard and what is felt of `n` samples to their levels.
+    pub(super) fn level(&mut self, n: usize, (heard, felt): (f64, f64)) {
+        self.haptic[..n].iter_mut().for_each(|x| *x *= felt);
+        self.impulse_n_s[..n].iter_mut().for_each(|x| *x *= heard);
+    }
 }

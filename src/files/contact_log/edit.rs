@@ -137,9 +137,9 @@ pub struct LogBody {
     /// Linear gain; missing: 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub gain: f64,
-    /// Linear gain of impacts beside strokes; missing: 1.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    pub strike_gain: f64,
+    /// Linear gain of impacts beside strokes; missing: 1, or by the level policy of the engine.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strike_gain: Option<f64>,
     /// Least time between equally strong impacts, s; missing: 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub least_time_s: f64,

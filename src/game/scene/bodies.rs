@@ -2,6 +2,7 @@
 
 use super::{KnownBody, Scene};
 use crate::files::contact_log::LogEdit;
+use crate::game::levels::{BodyLevel, Levels};
 use crate::link::message::{Dead, Made, Message};
 use crate::model::bad_value::within;
 use crate::model::body::{Body, MAX_SENDS, Sends};
@@ -62,7 +63,7 @@ impl Scene {
     /// # Errors
     /// When the body is not in this scene.
     pub fn strike_gain_of(&self, id: BodyId) -> Result<f64, AddError> {
-        self.given.get(&id).map(|body| body.strike_gain).ok_or(AddError::Unknown("body"))
+        self.known_body(id).map(|body| body.level.strike_gain)
     }
 
     /// Lets a body sound on another bus from now on, and on no other, without a click.
@@ -127,24 +128,28 @@ impl Scene {
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
         let rested = self.rested.iter().rposition(|rested| *rested.of == *body);
         let rested = rested.map(|index| self.rested.remove(index));
-        let (message, known) = self.prepared_body(id, body, rested)?;
+        self.checked_bus(body.bus)?;
+        let level = self.levels.body(&self.config, body)?;
+        let (message, known) = self.prepared_body(id, body, level, rested)?;
         self.send(message)?;
         self.bodies.set(id.0, known);
         Ok(())
     }
 
-    /// A body as the audio half takes it; `rested` is one of the same kind that has rung out.
+    /// A body as the audio half takes it, at its level; `rested` is one of the same kind that has
+    /// rung out.
     pub(crate) fn prepared_body(
         &self,
         id: BodyId,
         body: &Body,
+        level: BodyLevel,
         rested: Option<Made>,
     ) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
         within("least_time_s", body.least_time_s, limits::impact::LEAST_TIME_S)?;
         let sends = body.sends;
-        let strike_gain = within("strike_gain", body.strike_gain, limits::impact::GAIN)?;
+        let strike_gain = within("strike_gain", level.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.filter(|_| rested.is_none());
         let audible = audible.map(|culling| model.audible(rate, &culling));
@@ -154,20 +159,16 @@ impl Scene {
         let body = if let Some(Made { slot, of }) = rested {
             Made { slot: slot.rested(), of }
         } else {
-            let loudest_db_spl = self.loudest_db_spl(body);
-            let slot = BodySlot::new(
-                heard,
-                mass_kg,
-                loudest_db_spl,
-                (self.kernel, self.config.seed),
-                (rate, inner),
-            )?;
+            let loudest_db_spl = self.loudest_db_spl(body, strike_gain);
+            let at_level = Levels::model_at(heard, level.gain)?;
+            let seeded = (self.kernel, self.config.seed);
+            let slot = BodySlot::new(&at_level, mass_kg, loudest_db_spl, seeded, (rate, inner))?;
             Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
         };
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
-        let known = KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some() };
+        let known = KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some(), level };
         if rubs_on && !known.can_be_rubbed() {
             return Err(AddError::CannotRub);
         }
@@ -177,13 +178,10 @@ impl Scene {
 
     /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB;
     /// where nobody knows, that of speech.
-    fn loudest_db_spl(&self, body: &Body) -> f64 {
+    fn loudest_db_spl(&self, body: &Body, strike_gain: f64) -> f64 {
         let loudest = body.model.modes.iter().fold(0.0, |most, mode| f64::max(most, mode.amplitude.abs()));
-        let known = self
-            .config
-            .audio
-            .get(body.bus)
-            .and_then(|bus| bus.db_spl(loudest * body.gain * body.strike_gain));
+        let known =
+            self.config.audio.get(body.bus).and_then(|bus| bus.db_spl(loudest * body.gain * strike_gain));
         known.map_or(LOUDEST_DB_SPL, |db| db.clamp(HEARD_DB_SPL.0, HEARD_DB_SPL.1))
     }
 

@@ -5,10 +5,42 @@ use crate::files::contact_log::LogEdit;
 use crate::link::message::Message;
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
+use crate::model::event::Actuator;
 use crate::model::id::BodyId;
 use asperity_dsp::limits;
 
 impl Scene {
+    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few
+    /// milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such channel, the gain is not in 0–10, or the queue is full.
+    pub fn set_haptic_gain(&mut self, actuator: Actuator, gain: f64) -> Result<(), AddError> {
+        let channel = usize::from(actuator.0);
+        if channel >= self.config.actuators.len() {
+            return Err(AddError::Unknown("actuator"));
+        }
+        let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
+        self.send(Message::SetHapticGain { channel, gain })?;
+        self.note(|_| LogEdit::HapticGain { actuator: actuator.0, gain });
+        Ok(())
+    }
+
+    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
+    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
+        self.checked_bus(bus)?;
+        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
+        self.send(Message::SetAudioGain { bus, gain })?;
+        self.config.audio[bus].gain = gain;
+        // How loud it is decides which modes are left out first.
+        self.rested.clear();
+        self.note(|_| LogEdit::AudioGain { bus, gain });
+        Ok(())
+    }
+
     /// A body is louder or softer from now on, linear, without a step.
     ///
     /// # Errors

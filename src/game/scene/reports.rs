@@ -85,7 +85,10 @@ impl Scene {
             Counters::add(&self.counters.too_soon, 1);
             return Ok(());
         }
-        let sent = self.spun(stamp.sample() as f64 / self.config.inner_rate_hz(), event);
+        let levelled = self.levelled(event);
+        let touched = |contact| self.touched.get(&contact).map(|touched| touched.surface);
+        self.strongest.note(&levelled, touched);
+        let sent = self.spun(stamp.sample() as f64 / self.config.inner_rate_hz(), levelled);
         self.send_stamped(stamp, sent)?;
         self.reported.accept(&sent, stamp, self.rings(&sent));
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
@@ -106,7 +109,7 @@ impl Scene {
             return false;
         }
         let now = stamp.samples();
-        let impulse = impact.gain * impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution);
+        let impulse = impact.impulse_n_s();
         let least = least_time_s * self.config.inner_rate_hz();
         let before = self.sounded.get(&impact.body);
         let too_soon =
@@ -258,7 +261,7 @@ impl Scene {
             HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
                 .map_err(|_| Refusal::UnknownBody)?;
         let pulse = HertzPulse {
-            impulse_n_s: impact.gain * (impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution)),
+            impulse_n_s: impact.impulse_n_s(),
             contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
         };
         let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;

@@ -7,7 +7,7 @@ use crate::model::contact_sample::Place;
 use crate::model::error::{AddError, Refusal};
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::frame::SurfaceFrame;
-use crate::model::id::SurfaceId;
+use crate::model::id::{ProbeId, SurfaceId};
 use crate::model::strike_field::StrikePlace;
 use asperity_texture::tip_law::TipLaw;
 
@@ -67,12 +67,20 @@ impl Scene {
     pub(super) fn note_touch(&mut self, event: &ContactEvent) {
         match event {
             ContactEvent::Begin { contact, touching, sample } => {
-                let touched = Touched { surface: touching.surface, at_m: sample.at_m, spin: Spin::default() };
+                let touched = Touched {
+                    surface: touching.surface,
+                    at_m: sample.at_m,
+                    probe: touching.probe.map(ProbeId::index),
+                    gain: touching.gain,
+                    unfelt: touching.actuator.is_none(),
+                    spin: Spin::default(),
+                };
                 self.touched.insert(*contact, touched);
             }
-            ContactEvent::Moved { contact, sample, .. } => {
+            ContactEvent::Moved { contact, sample, emphasis } => {
                 if let Some(touched) = self.touched.get_mut(contact) {
                     touched.at_m = sample.at_m;
+                    touched.gain = emphasis.gain.unwrap_or(touched.gain);
                 }
             }
             ContactEvent::End { .. } | ContactEvent::Impact(_) => {}

@@ -1,0 +1,395 @@
+//! Levels of engines made in code: whatever is added, its reference motions and twice their speed
+//! stay within full scale, what sounds keeps its level, and content that was there costs nothing.
+
+use crate::common::{peak, rms};
+use asperity::files::scene_file::SceneFile;
+use asperity::open::Overrides;
+use asperity::{
+    Actuator, Body, BodyId, ClippedBecause, ClockMode, Config, ContactEvent, ContactId, ContactSample,
+    Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
+};
+use std::path::Path;
+use std::time::Instant;
+
+const STOCKS: [Stock; 4] = [Stock::Plate, Stock::Bar, Stock::Bowl, Stock::Block];
+
+fn live(levels: LevelPolicy) -> Config {
+    let found = Config { levels, clock: ClockMode::default(), ..Config::live(44_100.0) };
+    if levels == LevelPolicy::AsGiven { Config { levels, ..Config::default() } } else { found }
+}
+
+/// A scene and what it has played.
+struct Played {
+    scene: Scene,
+    renderer: Renderer,
+    time_s: f64,
+    haptic: Vec<f32>,
+    audio: Vec<f32>,
+}
+
+impl Played {
+    fn new(config: Config) -> Self {
+        let Engine { scene, renderer, .. } = config.build().unwrap();
+        Self { scene, renderer, time_s: 0.0, haptic: Vec::new(), audio: Vec::new() }
+    }
+
+    fn body(&mut self, body: Body) -> BodyId {
+        self.scene.add_body(body).unwrap()
+    }
+
+    /// A step of 1/60 s.
+    fn step(&mut self, event: Option<ContactEvent>) {
+        if let Some(event) = event {
+            self.scene.report(self.time_s, event).unwrap();
+        }
+        let (mut haptic, mut audio) = ([0.0; 735], [0.0; 735]);
+        self.renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+        self.haptic.extend(haptic);
+        self.audio.extend(audio);
+        self.time_s += 1.0 / 60.0;
+    }
+
+    /// A slanting stroke of half a second on a surface of 1 m; the audio and the haptic samples of
+    /// its settled part.
+    fn stroke(&mut self, touching: Touching, force_n: f64, speed_m_s: f64) -> [Vec<f32>; 2] {
+        let velocity = [0.6 * speed_m_s, -0.8 * speed_m_s];
+        let mut from = 0;
+        for step in 0..30 {
+            let t = f64::from(step) / 60.0;
+            let sample = ContactSample::new([0.05 + velocity[0] * t, 0.9 + velocity[1] * t], force_n)
+                .sliding(velocity);
+            let begin = ContactEvent::begin_with(ContactId(1), touching, sample);
+            self.step(Some(if step == 0 { begin } else { ContactEvent::moved(ContactId(1), sample) }));
+            if step == 6 {
+                from = self.audio.len();
+            }
+        }
+        let part = [self.audio[from..].to_vec(), self.haptic[from..].to_vec()];
+        self.step(Some(ContactEvent::end(ContactId(1))));
+        (0..6).for_each(|_| self.step(None));
+        part
+    }
+
+    fn drop(&mut self, body: BodyId, mass_kg: f64, speed_m_s: f64) {
+        let fallen =
+            Impact { mass_kg, speed_m_s, restitution: 0.3, striker: Material::STONE, ..Impact::on(body) };
+        self.step(Some(ContactEvent::Impact(fallen)));
+        (0..12).for_each(|_| self.step(None));
+    }
+}
+
+fn db(ratio: f64) -> f64 {
+    20.0 * ratio.log10()
+}
+
+fn ground(relief_m: f64, material: Material) -> Surface {
+    Surface::flat(1.0, 1.0).unwrap().of(material).micro_relief_m(relief_m)
+}
+
+#[test]
+fn sixty_engines_without_a_gain_stay_within_full_scale_at_twice_the_reference_speed() {
+    let (mut within, mut count, mut loudest) = (0, 0, 0.0f64);
+    let mut quietest = f64::INFINITY;
+    for case in 0..60usize {
+        let mass_kg = 10f64.powf(-2.0 + 4.0 * (case % 12) as f64 / 11.0);
+        let relief_m = [1e-6, 1e-5, 1e-4, 1e-3][case % 4];
+        let material = Material::PRESETS[case % Material::PRESETS.len()].material;
+        let policy = if case % 3 == 0 { LevelPolicy::Each } else { LevelPolicy::Shared };
+        let mut played = Played::new(live(policy));
+        let rigid = played.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
+        let body = |size_m| Body::stock(STOCKS[(case / 4) % 4], material, size_m).unwrap();
+        let thing = played.body(body(0.15));
+        // Every second ground rings as well.
+        let other =
+            (case % 2 == 0).then(|| played.body(Body::stock(Stock::Plate, Material::STONE, 0.5).unwrap()));
+        let surface = ground(relief_m, Material::STONE);
+        let top = played
+            .scene
+            .add_surface(other.map_or(ground(relief_m, Material::STONE), |id| surface.on(id)))
+            .unwrap();
+        let sliding = Touching::on(top).with(rigid).held_by(thing);
+        let mut levels = Vec::new();
+        for faster in [1.0, 2.0] {
+            let [heard, _] = played.stroke(sliding, 9.81 * mass_kg, faster);
+            levels.push(db(rms(&heard)));
+            played.drop(thing, mass_kg, 2.43 * faster);
+            let finger = Touching::on(top).felt_by(Actuator(0));
+            played.stroke(finger, 1.0, 0.1 * faster);
+        }
+        let limited = played.renderer.limiter_db();
+        let most = peak(&played.audio).max(peak(&played.haptic));
+        quietest = quietest.min(levels[0]);
+        println!(
+            "{case:2} {mass_kg:7.2} kg {relief_m:5.0e} m {policy:?}: slides at {:.1} and {:.1} dB, limiter {limited:.1} dB, peak {most:.2}",
+            levels[0], levels[1]
+        );
+        assert!(most <= 1.0, "{case}: {most}");
+        within += usize::from(limited <= 6.0);
+        count += 1;
+        loudest = loudest.max(limited);
+    }
+    println!(
+        "limiter ≤ 6 dB in {within} of {count}, at most {loudest:.1} dB; the quietest slide at {quietest:.1} dB rms"
+    );
+    assert!(within >= 54, "{within} of {count}");
+}
+
+#[test]
+fn a_fingers_stroke_on_levels_of_its_own_is_within_a_decibel_of_the_scene_files() {
+    let mut worst = [0.0f64; 2];
+    for (index, preset) in Material::PRESETS.iter().enumerate() {
+        let relief_m = [1e-6, 2e-5, 3e-4][index % 3];
+        let mut played = Played::new(live(LevelPolicy::Each));
+        // Others are there, louder and softer.
+        for material in [Material::STEEL, Material::RUBBER] {
+            let body = played.body(Body::stock(Stock::Bar, material, 0.3).unwrap());
+            played.scene.add_surface(ground(1e-3, material).on(body)).unwrap();
+        }
+        let body = played.body(Body::stock(Stock::Plate, preset.material, 0.14).unwrap());
+        let top = played.scene.add_surface(ground(relief_m, preset.material).on(body)).unwrap();
+        let stroked = played.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1);
+        let toml = format!(
+            "[[body]]\nname = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"{}\"\n[[surface]]\nname = \"s\"\nbody = \"b\"\n\
+             width_m = 1.0\nheight_m = 1.0\nmicro_relief_m = {relief_m:e}\n[[actuator]]\noutput = \"displacement\"\n",
+            preset.name
+        );
+        let file = SceneFile::parse(&toml, Path::new("scene.toml")).unwrap();
+        let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &Overrides::default()).unwrap();
+        let top = names.surfaces["s"];
+        let mut same = Played { scene, renderer, time_s: 0.0, haptic: Vec::new(), audio: Vec::new() };
+        let from_file = same.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1);
+        for sense in 0..2 {
+            let off_db = db(rms(&stroked[sense]) / rms(&from_file[sense]));
+            worst[sense] = worst[sense].max(off_db.abs());
+            if off_db.abs() > 0.5 {
+                println!("{} {relief_m:e}: sense {sense} off by {off_db:.2} dB", preset.name);
+            }
+        }
+    }
+    println!("heard off by at most {:.2} dB, felt by {:.2} dB", worst[0], worst[1]);
+    assert!(worst[0] <= 1.0 && worst[1] <= 1.0, "{worst:?}");
+}
+
+#[test]
+fn what_sounds_keeps_its_level_when_something_louder_is_added() {
+    let played = |louder: bool| {
+        let mut played = Played::new(live(LevelPolicy::Shared));
+        let body = played.body(Body::stock(Stock::Plate, Material::WOOD, 0.14).unwrap());
+        let top = played.scene.add_surface(ground(1e-6, Material::WOOD).on(body)).unwrap();
+        let touching = Touching::on(top).felt_by(Actuator(0));
+        let before = played.stroke(touching, 1.0, 0.1);
+        if louder {
+            let bell = played.body(Body::stock(Stock::Bowl, Material::STEEL, 0.1).unwrap());
+            let rough = played.scene.add_surface(ground(1e-3, Material::STEEL).on(bell)).unwrap();
+            let [heard, felt] = played.stroke(Touching::on(rough).felt_by(Actuator(0)), 1.0, 0.1);
+            assert!(
+                db(rms(&heard)) < -26.0 && db(rms(&felt)) < -20.0,
+                "{} {}",
+                db(rms(&heard)),
+                db(rms(&felt))
+            );
+            (0..60).for_each(|_| played.step(None));
+        } else {
+            (0..97).for_each(|_| played.step(None));
+        }
+        (before, played.stroke(touching, 1.0, 0.1))
+    };
+    let ((a, b), (c, d)) = (played(false), played(true));
+    assert_eq!(a, c);
+    for sense in 0..2 {
+        assert!(db(rms(&b[sense]) / rms(&d[sense])).abs() < 0.3);
+    }
+}
+
+#[test]
+fn shared_levels_keep_differences_and_levels_of_ones_own_do_not() {
+    let apart_db = |policy| {
+        let mut played = Played::new(live(policy));
+        let levels = [1e-4, 1e-5].map(|relief_m| {
+            let body = played.body(Body::stock(Stock::Plate, Material::WOOD, 0.14).unwrap());
+            let top = played.scene.add_surface(ground(relief_m, Material::WOOD).on(body)).unwrap();
+            played.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1).map(|x| db(rms(&x)))
+        });
+        [0, 1].map(|sense| levels[0][sense] - levels[1][sense])
+    };
+    let [given, shared, each] = [LevelPolicy::AsGiven, LevelPolicy::Shared, LevelPolicy::Each].map(apart_db);
+    for sense in 0..2 {
+        assert!(given[sense] > 10.0 && (shared[sense] - given[sense]).abs() < 1.0, "{given:?} {shared:?}");
+        assert!(each[sense].abs() < 2.0, "{each:?}");
+    }
+}
+
+#[test]
+fn equal_additions_give_equal_bits() {
+    let bits = || {
+        let mut played = Played::new(live(LevelPolicy::Shared));
+        let body = played.body(Body::stock(Stock::Pan, Material::STEEL, 0.3).unwrap());
+        let top = played.scene.add_surface(ground(3e-5, Material::STEEL).on(body)).unwrap();
+        played.drop(body, 2.0, 1.0);
+        played
+            .stroke(Touching::on(top).felt_by(Actuator(0)), 0.7, 0.2)
+            .map(|x| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
+    };
+    assert_eq!(bits(), bits());
+}
+
+#[test]
+fn the_trial_leaves_a_surface_as_it_was() {
+    let heard = |policy| {
+        let mut played = Played::new(Config { seed: 3, ..live(policy) });
+        let body = played.body(Body::stock(Stock::Plate, Material::GLASS, 0.14).unwrap());
+        let top = played.scene.add_surface(ground(2e-5, Material::GLASS).on(body)).unwrap();
+        played.stroke(Touching::on(top).felt_by(Actuator(0)), 0.5, 0.05)
+    };
+    let (found, given) = (heard(LevelPolicy::Each), heard(LevelPolicy::AsGiven));
+    // Stay clear of the limiters of either.
+    for (found, given) in found.iter().zip(&given) {
+        let factor = rms(found) / rms(given);
+        let left = found
+            .iter()
+            .zip(given)
+            .map(|(a, b)| (f64::from(*a) - factor * f64::from(*b)).powi(2))
+            .sum::<f64>();
+        let off_db = 10.0 * (left / found.len() as f64).log10() - db(rms(found));
+        assert!(off_db < -80.0, "{off_db} dB");
+    }
+}
+
+#[test]
+fn what_the_game_sets_counts() {
+    let heard = |gain: f64, strike_gain: Option<f64>| {
+        let mut played = Played::new(live(LevelPolicy::Shared));
+        let body = Body::stock(Stock::Plate, Material::WOOD, 0.14).unwrap().gain(gain);
+        let body = played.body(strike_gain.map_or(body.clone(), |strike_gain| body.strike_gain(strike_gain)));
+        played.scene.report(0.0, ContactEvent::Impact(Impact::from_impulse(body, 1e-3, 0.5, 0.6))).unwrap();
+        (0..10).for_each(|_| played.step(None));
+        (peak(&played.audio), played.scene.strike_gain_of(body).unwrap())
+    };
+    let (whole, found) = heard(1.0, None);
+    assert!((db(heard(0.5, None).0 / whole) + 6.02).abs() < 0.01);
+    let (third, told) = heard(1.0, Some(found / 3.0));
+    assert!(told == found / 3.0 && (db(third / whole) + 9.54).abs() < 0.3, "{third} {whole}");
+}
+
+#[test]
+fn content_that_was_there_is_added_in_microseconds() {
+    let mut played = Played::new(live(LevelPolicy::Shared));
+    let body = || Body::stock(Stock::Plate, Material::CERAMIC, 0.2).unwrap();
+    let timed = |scene: &mut Scene, take: &mut dyn FnMut(&mut Scene)| {
+        let began = Instant::now();
+        take(scene);
+        began.elapsed().as_secs_f64()
+    };
+    let first_s = timed(&mut played.scene, &mut |scene| assert!(scene.add_body(body()).is_ok()));
+    let id = played.body(body());
+    let mut surfaces = Vec::new();
+    let first_surface_s = timed(&mut played.scene, &mut |scene| {
+        surfaces.push(scene.add_surface(ground(2e-5, Material::CERAMIC).on(id)).unwrap());
+    });
+    let (mut bodies_s, mut surfaces_s) = (Vec::new(), Vec::new());
+    for _ in 0..60 {
+        let new = body();
+        let mut id = None;
+        let mut new = Some(new);
+        bodies_s.push(timed(&mut played.scene, &mut |scene| id = scene.add_body(new.take().unwrap()).ok()));
+        let mut top = Some(ground(2e-5, Material::CERAMIC).on(id.unwrap()));
+        surfaces_s.push(timed(&mut played.scene, &mut |scene| {
+            surfaces.push(scene.add_surface(top.take().unwrap()).unwrap());
+        }));
+        played.scene.remove_surface(surfaces.pop().unwrap()).unwrap();
+        played.scene.remove_body(id.unwrap()).unwrap();
+        (0..4).for_each(|_| played.step(None));
+    }
+    bodies_s.sort_by(f64::total_cmp);
+    surfaces_s.sort_by(f64::total_cmp);
+    println!(
+        "first body {:.1} ms, surface {:.1} ms; again body {:.1} µs, surface {:.1} µs in the median",
+        1e3 * first_s,
+        1e3 * first_surface_s,
+        1e6 * bodies_s[30],
+        1e6 * surfaces_s[30]
+    );
+    assert!(bodies_s[30] < 0.1 * first_s && surfaces_s[30] < 0.1 * first_surface_s);
+}
+
+#[test]
+fn the_readmes_snippet_stays_within_full_scale_without_its_limiter() {
+    let Engine { mut scene, mut renderer, .. } = Config::live(44_100.0).build().unwrap();
+    let plate = scene.add_body(Body::stock(Stock::Plate, Material::CERAMIC, 0.14).unwrap()).unwrap();
+    let top = Surface::flat(0.14, 0.14).unwrap().of(Material::CERAMIC).on(plate);
+    let top = scene.add_surface(top).unwrap();
+    let finger = ContactSample::new([0.3, 0.5], 0.6).sliding([0.1, 0.0]);
+    scene.report(0.0, ContactEvent::begin(ContactId(1), top, Actuator(0), finger)).unwrap();
+    scene.report(0.0, ContactEvent::Impact(Impact::from_impulse(plate, 0.002, 0.5, 0.6))).unwrap();
+    let (mut haptic, mut audio) = ([0.0; 8192], [0.0; 8192]);
+    renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+    println!("heard {:.2}, felt {:.2}, limiter {:.1} dB", peak(&audio), peak(&haptic), renderer.limiter_db());
+    assert!((0.05..0.9).contains(&peak(&audio)) && renderer.limiter_db() == 0.0);
+    assert!(scene.why_clipped().is_empty());
+}
+
+#[test]
+fn what_clips_is_named_with_what_to_turn_and_by_how_much() {
+    let mut played = Played::new(live(LevelPolicy::AsGiven));
+    let quiet = played.body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap());
+    let bell = Body::stock(Stock::Bowl, Material::STEEL, 0.1).unwrap();
+    let id = played.body(bell.clone());
+    let tap = Impact { mass_kg: 1e-7, ..Impact::on(quiet) };
+    played.step(Some(ContactEvent::Impact(tap)));
+    let hard = |id| ContactEvent::Impact(Impact { mass_kg: 0.3, speed_m_s: 2.0, ..Impact::on(id) });
+    played.step(Some(hard(id)));
+    let because = played.scene.why_clipped();
+    let ClippedBecause::Blows { body, by_db, strike_gain } = because[0] else { panic!("{because:?}") };
+    println!("{}", because[0]);
+    assert!(because.len() == 1 && body == id && by_db > 6.0);
+    // What it says helps.
+    let mut mended = Played::new(live(LevelPolicy::AsGiven));
+    let id = mended.body(bell.strike_gain(strike_gain));
+    mended.step(Some(hard(id)));
+    assert!(peak(&mended.audio) <= 1.05 && mended.scene.why_clipped().is_empty(), "{}", peak(&mended.audio));
+}
+
+#[test]
+fn strokes_that_clip_are_named_with_their_surface() {
+    let mut played = Played::new(live(LevelPolicy::AsGiven));
+    let crate_ = played.body(Body::stock(Stock::Plate, Material::SOFTWOOD, 0.4).unwrap());
+    let rigid = played.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
+    let bricks = played.scene.add_surface(ground(5e-3, Material::BRICK)).unwrap();
+    played.stroke(Touching::on(bricks).with(rigid).held_by(crate_), 63.0, 1.0);
+    let because = played.scene.why_clipped();
+    println!("{}", because[0]);
+    let told = because[0].to_string();
+    assert!(
+        matches!(because[0], ClippedBecause::Strokes { surface, .. } if surface == bricks),
+        "{because:?}"
+    );
+    assert!(
+        ["relief_m", "Body::gain", "AudioBus::gain", "63.00 N"].iter().all(|word| told.contains(word)),
+        "{told}"
+    );
+    // Levels that are found hold the same crate.
+    let mut found = Played::new(live(LevelPolicy::Shared));
+    let crate_ = found.body(Body::stock(Stock::Plate, Material::SOFTWOOD, 0.4).unwrap());
+    let rigid = found.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
+    let bricks = found.scene.add_surface(ground(5e-3, Material::BRICK)).unwrap();
+    let [heard, _] = found.stroke(Touching::on(bricks).with(rigid).held_by(crate_), 63.0, 1.0);
+    println!("crate on bricks: {:.1} dB rms, limiter {:.1} dB", db(rms(&heard)), found.renderer.limiter_db());
+    assert!(found.renderer.limiter_db() <= 6.0 && db(rms(&heard)) > -40.0);
+}
+
+#[test]
+fn a_surface_that_was_prepared_is_added_with_the_same_level() {
+    let heard = |prepared: bool| {
+        let mut played = Played::new(live(LevelPolicy::Shared));
+        let new = Body::stock(Stock::Bowl, Material::GLASS, 0.1).unwrap();
+        if prepared {
+            played.scene.prepare_body(&new).unwrap();
+        }
+        let body = played.body(new);
+        let surface = ground(2e-5, Material::GLASS).on(body);
+        let surface = if prepared { played.scene.prepare(surface).unwrap() } else { surface };
+        let top = played.scene.add_surface(surface).unwrap();
+        played.stroke(Touching::on(top).felt_by(Actuator(0)), 0.5, 0.1)
+    };
+    assert_eq!(heard(false), heard(true));
+}
