@@ -1,8 +1,9 @@
 //! Mesh files that readers of other projects were reported to fail at, as their programs write
 //! them: each is the same box, or is refused for what it is.
 
+use asperity_shape::eigenmodes::Wanted;
 use asperity_shape::surface_mesh::SurfaceMesh;
-use asperity_shape::{Mesh, ShapeError, parse};
+use asperity_shape::{Elastic, Making, Mesh, ShapeError, make, parse};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -263,4 +264,22 @@ fn a_gltf_whose_triangles_are_packed_by_an_extension_names_it() {
         .replace("\"scene\":0", "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0");
     let error = read("a.gltf", file.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("draco"), "{error}");
+}
+
+/// Refused for "walls of 1.4 mm": a cube one corner of which one triangle misses by 4 %.
+#[test]
+fn a_cube_that_gapes_at_a_corner_is_refused_with_what_was_closed() {
+    let mut mesh = SurfaceMesh::default();
+    for corners in triangles() {
+        let first = mesh.points.len() as u32;
+        mesh.points.extend(corners.map(|[x, y, z]| [x, y / 0.6, z / 0.2]));
+        mesh.triangles.push([first, first + 1, first + 2]);
+    }
+    let astray = mesh.points.iter_mut().find(|[x, y, z]| *x == 0.0 && y.min(*z) > 0.09).unwrap();
+    *astray = [0.0026, 0.0974, 0.0974];
+    let material = Elastic { young_pa: 70e9, poisson: 0.24, density_kg_m3: 2400.0 };
+    let wanted = Wanted { up_to_hz: None, most: 4 };
+    let making = Making { material, size_m: None, unit_m: None, thickness_m: None, wanted };
+    let error = make(Mesh::Surface(mesh), &making, &mut |_| ()).unwrap_err().to_string();
+    assert!(error.contains("holes were closed") && !error.contains('\n'), "{error}");
 }
