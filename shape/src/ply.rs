@@ -7,9 +7,13 @@ use crate::surface_mesh::{MOST_TRIANGLES, SurfaceMesh};
 use serde::Deserialize;
 use serde_ply::{DeserializeError, PlyReader};
 use std::borrow::Cow;
+use std::io::Read;
 
 /// Most corners of one face.
 const MOST_CORNERS: usize = 10_000;
+
+/// Bytes from the beginning in which a file says whether it is text.
+const HEAD: usize = 1000;
 
 #[derive(Deserialize)]
 struct Skipped {}
@@ -65,7 +69,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
 
 /// Vertices and faces; rows of other elements are passed over, whatever they are called.
 fn elements(bytes: &[u8]) -> Result<(Vec<Vertex>, Vec<Face>), DeserializeError> {
-    let mut reader = PlyReader::from_reader(bytes)?;
+    // The last number of a text may end with the file.
+    let end: &[u8] = if is_text(bytes) { b"\n" } else { b"" };
+    let mut reader = PlyReader::from_reader(bytes.chain(end))?;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     while let Some(element) = reader.current_element() {
         match element.name.as_str() {
@@ -75,6 +81,11 @@ fn elements(bytes: &[u8]) -> Result<(Vec<Vertex>, Vec<Face>), DeserializeError> 
         }
     }
     Ok((vertices, faces))
+}
+
+fn is_text(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(HEAD)];
+    head.windows(12).any(|part| part == b"format ascii")
 }
 
 /// The file with a header, and a text with all its lines, that ends lines by a line feed: some
@@ -89,8 +100,7 @@ fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     let Some(last) = bytes.windows(LAST.len()).position(|part| part == LAST) else {
         return Cow::Borrowed(bytes);
     };
-    let is_text = bytes.windows(12).take(last).any(|part| part == b"format ascii");
-    let head = if is_text { bytes.len() } else { (last + LAST.len() + mark.len()).min(bytes.len()) };
+    let head = if is_text(bytes) { bytes.len() } else { (last + LAST.len() + mark.len()).min(bytes.len()) };
     let mut whole: Vec<u8> = bytes[..head].to_vec();
     whole.retain(|&byte| mark == b"\r" || byte != b'\r');
     whole.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
