@@ -23,7 +23,7 @@ const FACES: [[u32; 4]; 6] =
 fn read(name: &str, bytes: &[u8]) -> Result<SurfaceMesh, ShapeError> {
     match parse(Path::new(name), bytes)? {
         Mesh::Surface(surface) => Ok(surface),
-        Mesh::Volume(_) => panic!("{name}: a volume"),
+        Mesh::Volume(_) | Mesh::Curved(..) => panic!("{name}: a volume"),
     }
 }
 
