@@ -202,6 +202,17 @@ fn a_wav_file_that_breaks_off_is_a_recording_that_says_so() {
     assert!(cut.truncated && cut.samples.len() == 2000, "{} {}", cut.truncated, cut.samples.len());
 }
 
+/// Reported as "truncated" and copied again in vain: a file that was written into a pipe.
+#[test]
+fn a_wav_file_of_a_program_that_could_not_know_its_length_is_not_called_cut_off() {
+    for said in [0, 0x7fff_0000, 0x7fff_ffff, 0x8000_0000, u32::MAX] {
+        let mut file = riff(b"RIFF", &[chunk(b"fmt ", &format(1, 16, 4)), chunk(b"data", &pcm16())]);
+        file[40..44].copy_from_slice(&said.to_le_bytes());
+        let whole = read("pipe", &file).unwrap();
+        assert!(!whole.truncated && whole.samples.len() == FRAMES, "{said:x}");
+    }
+}
+
 /// An ID3v2 tag of so many bytes in all.
 fn tag(version: u8, bytes: usize) -> Vec<u8> {
     let size = bytes - 10;
@@ -242,6 +253,16 @@ fn tags_of_players_in_front_and_behind_change_nothing() {
         }
         assert_same(&format!("{name} behind"), &[bytes, tag(4, 300)].concat());
     }
+}
+
+/// Reported as "unexpected end of file": a tagger writes its tag as a chunk into AIFF.
+#[test]
+fn an_aiff_with_a_tag_as_its_last_chunk_is_read_whole() {
+    let (mut file, tag) = (aiff(), tag(3, 30));
+    file.extend([b"ID3 ".as_slice(), &(tag.len() as u32).to_be_bytes(), &tag].concat());
+    let size = (file.len() as u32 - 8).to_be_bytes();
+    file[4..8].copy_from_slice(&size);
+    assert_same("tagged aiff", &file);
 }
 
 #[test]

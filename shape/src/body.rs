@@ -141,7 +141,9 @@ pub fn make_as_fine_as(
         }
         Mesh::Surface(surface) => {
             let body = Body::new(closed(surface, making.thickness_m, &mut told)?)?;
+            let mended = told.join("; ");
             from_surface(&body, &material, (making, fineness), told, progress)
+                .map_err(|error| error.after(&mended))
         }
     }?;
     for point in &mut body.field.points {

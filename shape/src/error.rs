@@ -18,6 +18,15 @@ impl ShapeError {
         Self { at: at.into(), what: what.into(), right: right.into() }
     }
 
+    /// Error of a body that was mended before: the mending may be its cause.
+    #[must_use]
+    pub(crate) fn after(mut self, mended: &str) -> Self {
+        if !mended.is_empty() {
+            self.what = format!("{} (after: {mended})", self.what);
+        }
+        self
+    }
+
     /// Error inside a file: its path comes first.
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {

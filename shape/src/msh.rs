@@ -131,6 +131,10 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
                 Some(_) => nodes_2(&mut reader, &mut found)?,
                 None => return Err(wrong("$Nodes", "comes before $MeshFormat")),
             },
+            "$ParametricNodes" => {
+                let right = "save it without them (Gmsh: Mesh.SaveParametric = 0)";
+                return Err(ShapeError::new(line, "are nodes with places on their surfaces", right));
+            }
             "$Elements" => {
                 if version == Some(4) {
                     elements_4(&mut reader, &mut found)?;

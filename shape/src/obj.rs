@@ -29,7 +29,7 @@ pub fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
             whole.push_str(line);
             line = &whole;
         }
-        let mut words = line.split_whitespace();
+        let mut words = line.split_whitespace().take_while(|word| !word.starts_with('#'));
         match words.next() {
             Some("v") => mesh.points.push(point(words).map_err(|error| error.within(&at()))?),
             Some(kind @ ("o" | "g")) => {

@@ -5,24 +5,15 @@ use crate::parts::Names;
 use crate::polygon;
 use crate::surface_mesh::{MOST_TRIANGLES, SurfaceMesh};
 use serde::Deserialize;
+use serde_ply::{DeserializeError, PlyReader};
+use std::borrow::Cow;
+use std::io::Read;
 
 /// Most corners of one face.
 const MOST_CORNERS: usize = 10_000;
 
-#[derive(Deserialize)]
-struct File {
-    #[serde(default)]
-    vertex: Vec<Vertex>,
-    #[serde(default)]
-    face: Vec<Face>,
-    // Rows of other elements have to be named to be passed over.
-    #[serde(default, rename = "edge")]
-    _edge: Vec<Skipped>,
-    #[serde(default, rename = "material")]
-    _material: Vec<Skipped>,
-    #[serde(default, rename = "camera")]
-    _camera: Vec<Skipped>,
-}
+/// Bytes from the beginning in which a file says whether it is text.
+const HEAD: usize = 1000;
 
 #[derive(Deserialize)]
 struct Skipped {}
@@ -45,18 +36,18 @@ struct Face {
 /// # Errors
 /// When it is no PLY, is cut short, names a point that is not there, or has no face.
 pub(crate) fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
-    let file: File = serde_ply::from_reader(bytes).map_err(|error| {
+    let (vertices, faces) = elements(&with_line_feeds(bytes)).map_err(|error| {
         let what = error.to_string().replace('\n', " ");
         ShapeError::new("", format!("is no whole PLY ({what})"), "must hold vertices with x, y, z and faces")
     })?;
-    let points: Vec<[f64; 3]> = file.vertex.iter().map(|v| [v.x, v.y, v.z]).collect();
+    let points: Vec<[f64; 3]> = vertices.iter().map(|v| [v.x, v.y, v.z]).collect();
     if let Some(i) = points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
         let what = format!("vertex {i} has a coordinate that is not a number");
         return Err(ShapeError::new("", what, "must be finite metres"));
     }
     let mut triangles = Vec::new();
     // Points and edges among the faces enclose nothing.
-    for (i, face) in file.face.iter().enumerate().filter(|(_, face)| face.vertex_indices.len() >= 3) {
+    for (i, face) in faces.iter().enumerate().filter(|(_, face)| face.vertex_indices.len() >= 3) {
         let corners = face.vertex_indices.iter().map(|&c| u32::try_from(c).ok()).collect::<Option<Vec<_>>>();
         let cut = corners
             .filter(|corners| corners.len() <= MOST_CORNERS)
@@ -74,6 +65,47 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
         return Err(ShapeError::new("", "has no face", "give the surface of a body, not points alone"));
     }
     Ok((SurfaceMesh { points, triangles }, Names::default()))
+}
+
+/// Vertices and faces; rows of other elements are passed over, whatever they are called.
+fn elements(bytes: &[u8]) -> Result<(Vec<Vertex>, Vec<Face>), DeserializeError> {
+    // The last number of a text may end with the file.
+    let end: &[u8] = if is_text(bytes) { b"\n" } else { b"" };
+    let mut reader = PlyReader::from_reader(bytes.chain(end))?;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    while let Some(element) = reader.current_element() {
+        match element.name.as_str() {
+            "vertex" => vertices = reader.next_element()?,
+            "face" => faces = reader.next_element()?,
+            _ => _ = reader.next_element::<Vec<Skipped>>()?,
+        }
+    }
+    Ok((vertices, faces))
+}
+
+fn is_text(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(HEAD)];
+    head.windows(12).any(|part| part == b"format ascii")
+}
+
+/// The file with a header, and a text with all its lines, that ends lines by a line feed: some
+/// programs end them by a carriage return, or by both the other way round.
+fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
+    const LAST: &[u8] = b"end_header";
+    let mark: &[u8] = match bytes.get(3..5) {
+        Some(b"\n\r") => b"\n\r",
+        Some([b'\r', next]) if *next != b'\n' => b"\r",
+        _ => return Cow::Borrowed(bytes),
+    };
+    let Some(last) = bytes.windows(LAST.len()).position(|part| part == LAST) else {
+        return Cow::Borrowed(bytes);
+    };
+    let head = if is_text(bytes) { bytes.len() } else { (last + LAST.len() + mark.len()).min(bytes.len()) };
+    let mut whole: Vec<u8> = bytes[..head].to_vec();
+    whole.retain(|&byte| mark == b"\r" || byte != b'\r');
+    whole.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
+    whole.extend(&bytes[head..]);
+    Cow::Owned(whole)
 }
 
 #[cfg(test)]

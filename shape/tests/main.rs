@@ -5,3 +5,4 @@ mod bodies;
 mod common;
 mod hostile;
 mod msh;
+mod reports;

@@ -36,8 +36,10 @@ pub(crate) struct MapOf {
 impl MapOf {
     fn make(&self, files: &dyn Files, maps: &Maps) -> Result<HeightMap, FileError> {
         let read = maps.read(&self.image, self.values.key(), files)?;
-        let raster = self.values.of(read, self.wrap);
-        let raster = if self.invert { raster.map(|value| 1.0 - value) } else { raster };
+        let mut raster = self.values.of(read, self.wrap);
+        if self.invert {
+            raster.values.iter_mut().for_each(|value| *value = 1.0 - *value);
+        }
         HeightMap::new(&raster, self.extent, self.wrap)
             .map_err(|error| FileError::told(error).within(self.image.path.display()))
     }

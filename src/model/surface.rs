@@ -150,8 +150,9 @@ impl Surface {
         extent: Extent,
     ) -> Result<Self, SurfaceError> {
         let heights = image_io::load_map(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
-        let rough = image_io::load_map(roughness, Channel::Luma)?.raster;
-        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?.with_roughness_map(&rough)?;
+        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
+        drop(heights); // One map at a time is as much memory as large ones need.
+        let map = map.with_roughness_map(&image_io::load_map(roughness, Channel::Luma)?.raster)?;
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 

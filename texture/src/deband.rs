@@ -20,14 +20,18 @@
 //! below 0.004 µm in the band.
 
 use crate::raster::Raster;
-use crate::spline::transpose;
 use crate::wrap::Wrap;
+use std::ops::Range;
 
 /// Radii of the running means, texels.
 const RADII: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Largest distance of a smooth map from the stored number, steps: rounding, and a little for
 /// values that were rounded twice.
 const TOLERANCE_STEPS: f64 = 0.52;
+/// Smallest side of a tile that is smoothed at once, texels, and how many radii it has at least:
+/// the tile and nine radii on every side are in memory.
+const TILE: usize = 256;
+const MARGINS: usize = 16;
 /// Share of contradicting texels in a neighbourhood that rules a radius out.
 const RULED_OUT: f64 = 0.04;
 /// Steps finer than this share of the range are left alone: over 4 mm, 1 µm.
@@ -52,25 +56,13 @@ pub fn deband(map: &Raster, step: f64, wrap: Wrap) -> Raster {
         if 2 * radius >= map.width.max(map.height) {
             break;
         }
-        let once = smooth(map, radius, wrap);
-        let twice = smooth(&once, radius, wrap);
-        let mut candidate = once;
-        for (b, bb) in candidate.values.iter_mut().zip(&twice.values) {
-            *b = 2.0 * *b - bb;
-        }
-        let mut doubt = candidate.clone();
-        for (doubt, q) in doubt.values.iter_mut().zip(&map.values) {
-            *doubt = if (*doubt - q).abs() > TOLERANCE_STEPS * step { 1.0 } else { 0.0 };
-        }
-        if doubt.mean() == 1.0 {
-            break;
-        }
-        let doubt = smooth(&doubt, radius, wrap);
         let mut used = false;
-        for ((out, b), doubt) in result.values.iter_mut().zip(&candidate.values).zip(&doubt.values) {
-            let trust = (1.0 - doubt / RULED_OUT).max(0.0);
-            used |= trust > 0.0;
-            *out += trust * (b - *out);
+        let side = TILE.max(MARGINS * radius);
+        for top in (0..map.height).step_by(side) {
+            for left in (0..map.width).step_by(side) {
+                let tile = [left..(left + side).min(map.width), top..(top + side).min(map.height)];
+                used |= smooth_tile(map, step, wrap, radius, tile, &mut result);
+            }
         }
         if !used {
             break;
@@ -83,29 +75,92 @@ pub fn deband(map: &Raster, step: f64, wrap: Wrap) -> Raster {
     result
 }
 
-/// Three running means of 2 · radius + 1 texels along rows and along columns.
-fn smooth(map: &Raster, radius: usize, wrap: Wrap) -> Raster {
-    transpose(&smooth_rows(&transpose(&smooth_rows(map, radius, wrap)), radius, wrap))
+/// Columns and rows of a map.
+type Tile = [Range<usize>; 2];
+
+/// Puts what explains a tile of the map over this radius into its place; tells if anything does.
+/// Tile by tile a large map needs little memory beside its own, and the numbers of a tile stay in
+/// the cache.
+fn smooth_tile(
+    map: &Raster,
+    step: f64,
+    wrap: Wrap,
+    radius: usize,
+    [columns, rows]: Tile,
+    result: &mut Raster,
+) -> bool {
+    let reach = 3 * radius;
+    let beyond = |of: &Range<usize>, len: usize, margins: usize| -> Vec<usize> {
+        let margin = (margins * reach) as i64;
+        (of.start as i64 - margin..of.end as i64 + margin).map(|i| wrap.index(i, len)).collect()
+    };
+    let cut = |margins: usize| {
+        let (columns, rows) = (beyond(&columns, map.width, margins), beyond(&rows, map.height, margins));
+        Raster::from_fn(columns.len(), rows.len(), |x, y| map.at(columns[x], rows[y]))
+    };
+    let once = smooth(cut(3), radius);
+    let mut candidate = smooth(once.clone(), radius);
+    let mut doubt = cut(1);
+    for y in 0..candidate.height {
+        let once = &once.row(y + reach)[reach..];
+        let at = y * candidate.width;
+        let found = candidate.values[at..].iter_mut().zip(once).take(doubt.width);
+        for ((b, once), doubt) in found.zip(&mut doubt.values[at..]) {
+            *b = 2.0 * once - *b;
+            *doubt = if (*b - *doubt).abs() > TOLERANCE_STEPS * step { 1.0 } else { 0.0 };
+        }
+    }
+    drop(once);
+    let doubt = smooth(doubt, radius);
+    let mut used = false;
+    for (y, row) in rows.enumerate() {
+        let out = &mut result.values[row * map.width..][columns.clone()];
+        let candidate = &candidate.row(y + reach)[reach..];
+        for ((out, b), doubt) in out.iter_mut().zip(candidate).zip(doubt.row(y)) {
+            let trust = (1.0 - doubt / RULED_OUT).max(0.0);
+            used |= trust > 0.0;
+            *out += trust * (b - *out);
+        }
+    }
+    used
 }
 
-fn smooth_rows(map: &Raster, radius: usize, wrap: Wrap) -> Raster {
-    let n = map.width;
-    let reach = 3 * radius;
-    let index: Vec<usize> = (0..n + 2 * reach).map(|i| wrap.index(i as i64 - reach as i64, n)).collect();
-    let mut values = Vec::with_capacity(map.values.len());
-    let mut line = vec![0.0; index.len()];
-    for y in 0..map.height {
-        let row = map.row(y);
-        line.resize(index.len(), 0.0);
-        for (out, &i) in line.iter_mut().zip(&index) {
-            *out = row[i];
-        }
-        for _ in 0..3 {
-            running_mean(&mut line, radius);
-        }
-        values.extend_from_slice(&line);
+/// Three running means of 2 · radius + 1 texels along rows and along columns; the map loses three
+/// radii on every side.
+fn smooth(map: Raster, radius: usize) -> Raster {
+    let Raster { width: before, mut height, mut values } = map;
+    let width = before - 6 * radius;
+    let mut line = Vec::with_capacity(before);
+    for y in 0..height {
+        line.clear();
+        line.extend_from_slice(&values[y * before..][..before]);
+        (0..3).for_each(|_| running_mean(&mut line, radius));
+        values[y * width..][..width].copy_from_slice(&line);
     }
-    Raster { width: n, height: map.height, values }
+    for _ in 0..3 {
+        running_mean_of_rows(&mut values, width, &mut height, radius);
+    }
+    values.truncate(width * height);
+    Raster { width, height, values }
+}
+
+/// [`running_mean`] of every column; `height` rows become fewer.
+fn running_mean_of_rows(values: &mut [f64], width: usize, height: &mut usize, radius: usize) {
+    let size = 2 * radius + 1;
+    *height -= 2 * radius;
+    let mut sum = vec![0.0; width];
+    for row in values.chunks_exact(width).take(size - 1) {
+        sum.iter_mut().zip(row).for_each(|(sum, v)| *sum += v);
+    }
+    for y in 0..*height {
+        let (first, last) = values[y * width..].split_at_mut((size - 1) * width);
+        for ((sum, first), last) in sum.iter_mut().zip(first).zip(&*last) {
+            *sum += last;
+            let used = *first;
+            *first = *sum / size as f64;
+            *sum -= used;
+        }
+    }
 }
 
 /// The mean of every 2 · radius + 1 neighbours, in place; the line loses `radius` at either end.

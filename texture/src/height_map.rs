@@ -90,12 +90,13 @@ impl HeightMap {
     pub fn new(heights: &Raster, extent: Extent, wrap: Wrap) -> Result<Self, MapError> {
         extent.check()?;
         check(heights)?;
-        let heights = heights.map(|v| v * extent.relief_m);
-        let (low_m, high_m) = heights.range();
+        let height_m = |v: f64| v * extent.relief_m;
+        let (low, high) = heights.range();
+        let (low_m, high_m) = (height_m(low), height_m(high));
         let reach_m = high_m.abs().max(low_m.abs());
-        let local = (low_m != high_m)
-            .then(|| Arc::new(LocalRelief::new(&heights, [extent.width_m, extent.height_m], wrap)));
-        let heights = Pyramid::new(&heights, extent, wrap);
+        let size_m = [extent.width_m, extent.height_m];
+        let local = (low_m != high_m).then(|| Arc::new(LocalRelief::new(heights, height_m, size_m, wrap)));
+        let heights = Pyramid::new(heights, height_m, extent, wrap);
         let band = match heights.levels.first() {
             None => WavelengthBand::EMPTY,
             Some(finest) => {
@@ -145,8 +146,8 @@ impl HeightMap {
     /// When the raster is empty or not finite.
     pub fn with_roughness_map(mut self, roughness: &Raster) -> Result<Self, MapError> {
         check(roughness)?;
-        let roughness = roughness.map(|r| r.clamp(0.0, 1.0));
-        self.roughness = Roughness::Map(Pyramid::new(&roughness, self.extent, self.wrap));
+        let within = |r: f64| r.clamp(0.0, 1.0);
+        self.roughness = Roughness::Map(Pyramid::new(roughness, within, self.extent, self.wrap));
         Ok(self)
     }
 
@@ -182,18 +183,19 @@ impl HeightMap {
 }
 
 impl Pyramid {
-    fn new(raster: &Raster, extent: Extent, wrap: Wrap) -> Self {
-        let constant = raster.values[0];
+    /// `value` of a raster's numbers; no copy of a large map is made on the way.
+    fn new(raster: &Raster, value: impl Fn(f64) -> f64 + Copy, extent: Extent, wrap: Wrap) -> Self {
+        let constant = value(raster.values[0]);
         let mut levels = Vec::new();
-        if raster.values.iter().all(|&v| v == constant) {
+        if raster.values.iter().all(|&v| value(v) == constant) {
             return Self { levels: levels.into(), constant };
         }
         let size = [extent.width_m, extent.height_m];
-        levels.push(Spline::new(raster, size, wrap));
-        let mut smaller = halve(raster, wrap);
+        let mut smaller = halve(raster, value, wrap);
+        levels.push(Spline::new(raster, value, size, wrap));
         while levels.len() < 32 && (smaller.width > 1 || smaller.height > 1) {
-            levels.push(Spline::new(&smaller, size, wrap));
-            smaller = halve(&smaller, wrap);
+            levels.push(Spline::new(&smaller, |v| v, size, wrap));
+            smaller = halve(&smaller, |v| v, wrap);
         }
         Self { levels: levels.into(), constant }
     }
@@ -332,8 +334,8 @@ impl HeightMap {
         let known = self.tips.iter().any(|(known_m, _)| *known_m == radius_m);
         let Some(finest) = self.heights.levels.first().filter(|_| radius_m > 0.0 && !known) else { return };
         let texels_per_metre = finest.texels_per_metre();
-        let map = ridden(&finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
-        self.tips.push((radius_m, Pyramid::new(&map, self.extent, self.wrap)));
+        let map = ridden(finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
+        self.tips.push((radius_m, Pyramid::new(&map, |m| m, self.extent, self.wrap)));
     }
 
     fn write_power(&self, path: &PathBlock<'_>, full_m2: f64, power: &mut Power) {

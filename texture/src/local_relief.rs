@@ -30,15 +30,15 @@ pub(crate) struct LocalRelief {
 }
 
 impl LocalRelief {
-    /// Relief of heights in metres, `size_m` along u and v.
-    pub fn new(heights: &Raster, size_m: [f64; 2], wrap: Wrap) -> Self {
-        let (w, h) = (heights.width, heights.height);
+    /// Relief of a map of which `height_m` makes metres, `size_m` along u and v.
+    pub fn new(map: &Raster, height_m: impl Fn(f64) -> f64, size_m: [f64; 2], wrap: Wrap) -> Self {
+        let (w, h) = (map.width, map.height);
         let (width, height) = (w.min(CELLS), h.min(CELLS));
         let texel_m = [size_m[0] / w as f64, size_m[1] / h as f64];
         let mut power = vec![0.0; width * height];
         let mut lag = 1;
         while lag == 1 || lag as f64 * texel_m[0].min(texel_m[1]) <= LONGEST_LAG_M {
-            add_lag(heights, lag, wrap, &mut power, [width, height]);
+            add_lag(map, &height_m, lag, wrap, &mut power, [width, height]);
             lag *= 2;
         }
         let power_m2 = Raster { width, height, values: power };
@@ -133,8 +133,15 @@ impl Corners {
 
 /// Adds one lag's mean squares to the cells; looks at every texel of short lags, at every half lag
 /// of long ones.
-fn add_lag(heights: &Raster, lag: usize, wrap: Wrap, power: &mut [f64], cells: [usize; 2]) {
-    let (w, h) = (heights.width, heights.height);
+fn add_lag(
+    map: &Raster,
+    height_m: impl Fn(f64) -> f64,
+    lag: usize,
+    wrap: Wrap,
+    power: &mut [f64],
+    cells: [usize; 2],
+) {
+    let (w, h) = (map.width, map.height);
     let stride = (lag / 2).max(1).min(w.div_ceil(cells[0])).min(h.div_ceil(cells[1]));
     let mut counts = vec![0u32; power.len()];
     let mut sums = vec![0.0; power.len()];
@@ -147,10 +154,10 @@ fn add_lag(heights: &Raster, lag: usize, wrap: Wrap, power: &mut [f64], cells: [
         let here = y * w;
         for x in (0..w).step_by(stride) {
             let columns = taps(w, x);
-            let middle = 6.0 * heights.values[here + x];
+            let at = |index: usize| height_m(map.values[index]);
+            let middle = 6.0 * at(here + x);
             let fourth =
                 |far: [f64; 2], near: [f64; 2]| (far[0] + far[1] - 4.0 * (near[0] + near[1]) + middle) / 16.0;
-            let at = |index: usize| heights.values[index];
             let [a, b, c, d] = columns.map(|column| at(here + column));
             let along_u = fourth([a, d], [b, c]);
             let [a, b, c, d] = rows.map(|row| at(row + x));
@@ -217,7 +224,7 @@ mod tests {
     fn picture(n: usize, height_m: impl Fn(f64, f64) -> f64) -> LocalRelief {
         let at = |i: usize| (i as f64 + 0.5) / n as f64 * 0.14;
         let values = (0..n * n).map(|i| height_m(at(i % n), at(i / n))).collect();
-        LocalRelief::new(&Raster { width: n, height: n, values }, [0.14; 2], Wrap::Repeat)
+        LocalRelief::new(&Raster { width: n, height: n, values }, |m| m, [0.14; 2], Wrap::Repeat)
     }
 
     #[test]

@@ -15,38 +15,60 @@
 use crate::raster::Raster;
 use crate::wrap::Wrap;
 
+/// Columns that are dilated at once, so that a large map does not miss the cache at every texel.
+const COLUMNS: usize = 16;
+
 /// The map that a tip of `radius_m` rides on: texels `texel_m` apart along u and v.
 #[must_use]
-pub fn ridden(heights: &Raster, texel_m: [f64; 2], wrap: Wrap, radius_m: f64) -> Raster {
+pub fn ridden(mut heights: Raster, texel_m: [f64; 2], wrap: Wrap, radius_m: f64) -> Raster {
     let (low_m, high_m) = heights.range();
     let reach_m = (2.0 * radius_m * (high_m - low_m)).sqrt();
-    let along = |raster: &Raster, texel_m: f64| {
-        let fall_m = texel_m * texel_m / (2.0 * radius_m);
-        let reach = ((reach_m / texel_m).ceil() as usize).min(raster.width);
-        rows(raster, wrap, reach, fall_m)
+    let along = |texel_m: f64, length: usize| {
+        let reach = ((reach_m / texel_m).ceil() as usize).min(length);
+        Dilation::new(length, reach, texel_m * texel_m / (2.0 * radius_m), wrap)
     };
-    let by_rows = along(heights, texel_m[0]);
-    transposed(&along(&transposed(&by_rows), texel_m[1]))
-}
-
-fn transposed(raster: &Raster) -> Raster {
-    Raster::from_fn(raster.height, raster.width, |x, y| raster.at(y, x))
-}
-
-/// Each row dilated; what lies beyond its ends within reach takes part.
-fn rows(raster: &Raster, wrap: Wrap, reach: usize, fall_m: f64) -> Raster {
-    let width = raster.width;
-    let mut values = Vec::with_capacity(raster.values.len());
-    let mut line = vec![0.0; width + 2 * reach];
-    let mut envelope = Envelope::default();
-    for row in raster.values.chunks_exact(width) {
-        for (i, height_m) in line.iter_mut().enumerate() {
-            *height_m = row[wrap.index(i as i64 - reach as i64, width)];
+    let Raster { width, height, ref mut values } = heights;
+    let mut rows = along(texel_m[0], width);
+    values.chunks_exact_mut(width).for_each(|row| rows.dilate(row));
+    let mut columns = along(texel_m[1], height);
+    let mut lines = Vec::new();
+    for left in (0..width).step_by(COLUMNS) {
+        let strip = left..(left + COLUMNS).min(width);
+        lines.resize(strip.len() * height, 0.0);
+        for (y, row) in values.chunks_exact(width).enumerate() {
+            row[strip.clone()].iter().enumerate().for_each(|(x, v)| lines[x * height + y] = *v);
         }
-        envelope.of(&line, fall_m);
-        values.extend((reach..reach + width).map(|x| envelope.at(&line, x, fall_m)));
+        lines.chunks_exact_mut(height).for_each(|line| columns.dilate(line));
+        for (y, row) in values.chunks_exact_mut(width).enumerate() {
+            row[strip.clone()].iter_mut().enumerate().for_each(|(x, v)| *v = lines[x * height + y]);
+        }
     }
-    Raster { width, height: raster.height, values }
+    heights
+}
+
+/// Dilation of lines; what lies beyond their ends within reach takes part.
+struct Dilation {
+    index: Vec<usize>,
+    reach: usize,
+    fall_m: f64,
+    line: Vec<f64>,
+    envelope: Envelope,
+}
+
+impl Dilation {
+    fn new(length: usize, reach: usize, fall_m: f64, wrap: Wrap) -> Self {
+        let index: Vec<usize> =
+            (0..length + 2 * reach).map(|i| wrap.index(i as i64 - reach as i64, length)).collect();
+        Self { line: vec![0.0; index.len()], index, reach, fall_m, envelope: Envelope::default() }
+    }
+
+    fn dilate(&mut self, heights_m: &mut [f64]) {
+        self.line.iter_mut().zip(&self.index).for_each(|(out, &i)| *out = heights_m[i]);
+        self.envelope.of(&self.line, self.fall_m);
+        for (x, out) in heights_m.iter_mut().enumerate() {
+            *out = self.envelope.at(&self.line, self.reach + x, self.fall_m);
+        }
+    }
 }
 
 /// Which parabola is the highest from where on.
@@ -108,7 +130,7 @@ mod tests {
     #[test]
     fn a_spike_becomes_the_sphere_that_stands_on_it() {
         let spike = Raster::from_fn(33, 33, |x, y| if (x, y) == (16, 16) { 1e-4 } else { 0.0 });
-        let out = ridden(&spike, [1e-4, 1e-4], Wrap::Clamp, 1e-3);
+        let out = ridden(spike, [1e-4, 1e-4], Wrap::Clamp, 1e-3);
         for (x, y) in [(16, 16), (18, 16), (16, 13), (19, 18), (30, 30)] {
             let away_m = 1e-4 * f64::hypot(x as f64 - 16.0, y as f64 - 16.0);
             let sphere_m = (1e-4 - away_m * away_m / 2e-3).max(0.0);
@@ -120,7 +142,7 @@ mod tests {
     fn the_envelope_is_the_largest_of_all_parabolas_whatever_the_wrap() {
         let map = random(23, 17);
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-            let out = ridden(&map, [1e-4, 2e-4], wrap, 2e-4);
+            let out = ridden(map.clone(), [1e-4, 2e-4], wrap, 2e-4);
             for (x, y) in [(0, 0), (22, 16), (11, 5), (3, 15)] {
                 let mut best: f64 = 0.0;
                 for dy in -16_i64..=16 {
@@ -138,9 +160,9 @@ mod tests {
     #[test]
     fn what_is_ridden_never_lies_below_the_ground_and_a_plane_stays_a_plane() {
         let map = random(40, 40);
-        let out = ridden(&map, [1e-4, 1e-4], Wrap::Repeat, 1e-3);
+        let out = ridden(map.clone(), [1e-4, 1e-4], Wrap::Repeat, 1e-3);
         assert!(out.values.iter().zip(&map.values).all(|(z, h)| z >= h));
         let plane = Raster::constant(5, 4, 0.3);
-        assert_eq!(ridden(&plane, [1e-3, 1e-3], Wrap::Repeat, 1e-2), plane);
+        assert_eq!(ridden(plane.clone(), [1e-3, 1e-3], Wrap::Repeat, 1e-2), plane);
     }
 }

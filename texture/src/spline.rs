@@ -23,6 +23,7 @@ use cell::Cell;
 pub use cell::Samples;
 use place::Axis;
 pub use place::Places;
+use std::ops::Range;
 use vector::{Four, Rows, Vector};
 pub(crate) use working::Working;
 
@@ -36,6 +37,10 @@ const PAD: usize = 14;
 /// Distance beyond the first and last texel centre at which a clamped map is still evaluated,
 /// texels.
 const REACH: f64 = 12.0;
+
+/// Columns that are filtered at once: rows of a large map are filtered once for each strip, which
+/// takes less time than a copy of all of it takes memory.
+const STRIP: usize = 1056;
 
 /// Coefficients are asked for ahead of a stroke over so many texels a block at most.
 const FARTHEST_AHEAD: f64 = 12.0;
@@ -51,13 +56,17 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// The spline through a raster (not empty) that spans `extent_m`.
-    pub fn new(raster: &Raster, extent_m: [f64; 2], wrap: Wrap) -> Self {
-        let rows = prefilter_rows(raster, wrap);
-        let both = transpose(&prefilter_rows(&transpose(&rows), wrap));
+    /// The spline through `value` of a raster's (not empty) numbers, which spans `extent_m`.
+    pub fn new(raster: &Raster, value: impl Fn(f64) -> f64, extent_m: [f64; 2], wrap: Wrap) -> Self {
+        let stride = raster.width + 2 * PAD;
+        let mut coefficients = vec![0.0; stride * (raster.height + 2 * PAD)];
+        for left in (0..stride).step_by(STRIP) {
+            let strip = left..(left + STRIP).min(stride);
+            prefilter_strip(raster, &value, wrap, strip, &mut coefficients);
+        }
         Self {
-            stride: both.width,
-            coefficients: both.values.iter().map(|&c| c as f32).collect(),
+            stride,
+            coefficients,
             axes: [Axis::new(raster.width, extent_m[0], wrap), Axis::new(raster.height, extent_m[1], wrap)],
             level: Level::detect(),
         }
@@ -170,43 +179,56 @@ impl Spline {
     }
 }
 
-/// Coefficients of every row, with [`PAD`] more on either side.
-fn prefilter_rows(raster: &Raster, wrap: Wrap) -> Raster {
-    let n = raster.width;
-    let index: Vec<usize> = (0..n + 2 * SETTLE).map(|i| wrap.index(i as i64 - SETTLE as i64, n)).collect();
-    let width = n + 2 * PAD;
-    let mut values = Vec::with_capacity(width * raster.height);
-    let mut line = vec![0.0; index.len()];
-    for y in 0..raster.height {
-        let row = raster.row(y);
-        let mut causal = row[index[0]] / (1.0 - POLE);
-        for (out, &i) in line.iter_mut().zip(&index) {
-            causal = row[i] + POLE * causal;
-            *out = causal;
+/// Coefficients of these columns of all rows, with [`PAD`] more on every side.
+fn prefilter_strip(
+    raster: &Raster,
+    value: impl Fn(f64) -> f64,
+    wrap: Wrap,
+    strip: Range<usize>,
+    coefficients: &mut [f32],
+) {
+    let (n, stride) = (raster.width, raster.width + 2 * PAD);
+    let beyond = |len: usize| (0..len + 2 * SETTLE).map(move |i| wrap.index(i as i64 - SETTLE as i64, len));
+    let columns: Vec<usize> = beyond(n).collect();
+    let mut line = vec![0.0; columns.len()];
+    let mut causal: Vec<f64> = Vec::with_capacity(strip.len() * (raster.height + 2 * SETTLE));
+    for y in beyond(raster.height) {
+        prefilter_row(raster.row(y), &value, &columns, &mut line);
+        let start = causal.len();
+        causal.extend(line[SETTLE - PAD..][strip.clone()].iter().map(|c| 6.0 * c));
+        let (above, row) = causal.split_at_mut(start);
+        if above.is_empty() {
+            row.iter_mut().for_each(|out| *out += POLE * (*out / (1.0 - POLE)));
+        } else {
+            let above = &above[start - strip.len()..];
+            row.iter_mut().zip(above).for_each(|(out, above)| *out += POLE * above);
         }
-        let mut next = causal * POLE / (POLE - 1.0);
-        for out in line.iter_mut().rev() {
-            next = POLE * (next - *out);
-            *out = next;
-        }
-        values.extend(line[SETTLE - PAD..SETTLE + n + PAD].iter().map(|c| 6.0 * c));
     }
-    Raster { width, height: raster.height, values }
+    let mut next = vec![0.0; strip.len()];
+    for (x, next) in next.iter_mut().enumerate() {
+        *next = causal[causal.len() - strip.len() + x] * POLE / (POLE - 1.0);
+    }
+    for (i, causal) in causal.chunks_exact(strip.len()).enumerate().rev() {
+        next.iter_mut().zip(causal).for_each(|(next, causal)| *next = POLE * (*next - causal));
+        let y = i.wrapping_sub(SETTLE - PAD);
+        if y < raster.height + 2 * PAD {
+            let out = &mut coefficients[y * stride..][strip.clone()];
+            out.iter_mut().zip(&next).for_each(|(out, c)| *out = (6.0 * c) as f32);
+        }
+    }
 }
 
-/// Rows become columns; in tiles, so that a large map does not miss the cache at every texel.
-pub fn transpose(raster: &Raster) -> Raster {
-    const TILE: usize = 32;
-    let (w, h) = (raster.width, raster.height);
-    let mut values = vec![0.0; w * h];
-    for y0 in (0..h).step_by(TILE) {
-        for x0 in (0..w).step_by(TILE) {
-            for y in y0..h.min(y0 + TILE) {
-                for x in x0..w.min(x0 + TILE) {
-                    values[x * h + y] = raster.values[y * w + x];
-                }
-            }
-        }
+/// Coefficients of a row, a sixth of them, with [`SETTLE`] more on either side.
+fn prefilter_row(row: &[f64], value: impl Fn(f64) -> f64, columns: &[usize], line: &mut [f64]) {
+    line.iter_mut().zip(columns).for_each(|(out, &i)| *out = value(row[i]));
+    let mut causal = line[0] / (1.0 - POLE);
+    for out in line.iter_mut() {
+        causal = *out + POLE * causal;
+        *out = causal;
     }
-    Raster { width: h, height: w, values }
+    let mut next = causal * POLE / (POLE - 1.0);
+    for out in line.iter_mut().rev() {
+        next = POLE * (next - *out);
+        *out = next;
+    }
 }

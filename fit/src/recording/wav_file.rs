@@ -39,6 +39,9 @@ const IDENTIFIERS: [[u8; 14]; 2] = [
 ];
 /// A size that is not known yet, or stands in `ds64`.
 const ELSEWHERE: u64 = 0xffff_ffff;
+/// Sizes from here on, where less is there, are written by programs that write into a pipe: about the
+/// most that 32 bits hold, with a sign or without.
+const UNSAID: u64 = 0x7fff_0000;
 
 /// A WAV file.
 pub(crate) struct WavFile {
@@ -91,7 +94,7 @@ impl WavFile {
     }
 
     fn with(head: Head, layout: Layout, said: u64, there: u64) -> Self {
-        let unsaid = said == 0 || said == ELSEWHERE || said == u64::MAX;
+        let unsaid = said == 0 || said == u64::MAX || said > there && (UNSAID..=ELSEWHERE).contains(&said);
         let bytes = if unsaid { there } else { said.min(there) };
         let frame = layout.frame_bytes as u64;
         let frames = bytes / frame;

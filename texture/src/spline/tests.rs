@@ -37,7 +37,7 @@ fn blocks_on_every_instruction_set_give_the_bits_of_single_samples() {
     let mut rng = Rng::new(5);
     let raster = Raster::from_fn(19, 23, |_, _| rng.uniform());
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
-        let mut spline = Spline::new(&raster, [0.19, 0.23], wrap);
+        let mut spline = Spline::new(&raster, |v| v, [0.19, 0.23], wrap);
         for level in levels() {
             spline.level = level;
             // From many samples a texel to several texels a sample, blocks of every length.
