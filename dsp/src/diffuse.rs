@@ -302,7 +302,7 @@ impl<G: AsRef<[DiffuseGroup]>, S: AsMut<[DiffuseState]>> DiffuseBank<G, S> {
                 for (re, im) in re.iter_mut().zip(im) {
                     let square = *re * *re + *im * *im;
                     // False for NaN as well.
-                    let keep = square >= SLEEP * SLEEP && square < ABSURD * ABSURD;
+                    let keep = (SLEEP * SLEEP..ABSURD * ABSURD).contains(&square);
                     if !keep {
                         (*re, *im) = (0.0, 0.0);
                     }

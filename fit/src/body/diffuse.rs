@@ -235,7 +235,10 @@ mod tests {
             let modes: Vec<f64> = (0..44_100)
                 .map(|n| f64::from(n) / RATE_HZ)
                 .map(|t| {
-                    [700.0, 1900.0, 5200.0].iter().map(|f| (-6.0 * t).exp() * (f * 6.283 * t).sin()).sum()
+                    [700.0, 1900.0, 5200.0]
+                        .iter()
+                        .map(|f| (-6.0 * t).exp() * (f * std::f64::consts::TAU * t).sin())
+                        .sum()
                 })
                 .collect();
             let recorded: Vec<f64> = modes.iter().zip(&hiss).map(|(m, h)| m + floor * h).collect();
