@@ -234,7 +234,10 @@ fn what_is_not_written_is_as_the_list_says() {
     // Factors that leave things as they are, and what an event may leave out.
     let listed =
         ALL.iter().filter(|parameter| parameter.default.is_some() && parameter.table != "event").count();
-    assert_eq!(listed, read.len() + ["residual", "scale", "compliance_m_n", "flow_m_s"].len());
+    assert_eq!(
+        listed,
+        read.len() + ["residual", "least_time_s", "scale", "compliance_m_n", "flow_m_s"].len()
+    );
 }
 
 #[test]

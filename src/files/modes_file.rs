@@ -147,7 +147,8 @@ impl ModalModel {
         Ok(model)
     }
 
-    /// The text of the modes file, of version 2 where there are shapes, 3 where there are bands; numbers round-trip.
+    /// The text of the modes file, of version 2 where there are shapes, 3 where there are bands;
+    /// numbers round-trip.
     #[must_use]
     pub fn to_json(&self) -> String {
         serde_json::to_string(&self.file()).unwrap_or_default()

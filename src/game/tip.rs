@@ -9,12 +9,12 @@
 //! into the surface    F = min(k · depth of p, max_force_n)    the proxy stays on it
 //! ```
 //!
-//! s follows p in closed form, p running along a straight line within a step: a step of 0.3 s is
-//! as exact as thirty of 10 ms. Place and velocity of the contact are those of s; s lags a steady
-//! motion by 2 √(m/k), 45 ms by default. The force has no lag: a spring that lags does work on a hand
-//! that is tracked with noise, this one does none. A contact begins where p comes through a surface
-//! from outside, and goes on, however deep p is, until p comes out again or leaves the surface at
-//! its edge.
+//! s follows p in closed form, p running along a straight line within a step: a step of 0.3 s is as
+//! exact as thirty of 10 ms. Place and velocity of the contact are those of s; s lags a steady
+//! motion by 2 √(m/k), 45 ms by default. The force has no lag: a spring that lags does work on a
+//! hand that is tracked with noise, this one does none. A contact begins where p comes through a
+//! surface from outside, and goes on, however deep p is, until p comes out again or leaves the
+//! surface at its edge.
 //!
 //! | seen | done |
 //! |---|---|
@@ -90,8 +90,8 @@ pub enum TipStep {
 }
 
 impl TipStep {
-    /// Event for [`Scene::report`](crate::Scene::report), felt by an actuator; none where nothing is
-    /// touched. `ids` are the surfaces in the order in which the tip was given them.
+    /// Event for [`Scene::report`](crate::Scene::report), felt by an actuator; none where nothing
+    /// is touched. `ids` are the surfaces in the order in which the tip was given them.
     #[must_use]
     pub fn event(self, ids: &[SurfaceId], contact: ContactId, actuator: Actuator) -> Option<ContactEvent> {
         match self {

@@ -16,7 +16,7 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// Time in which the bands rise after a strike, in lengths of the burst that it plays: halfway
 /// through its fade both have half of the power.
 const RISE: f64 = 0.375;
-/// The same without a burst, s: nothing rises then.
+/// Rise time without a burst, s: nothing rises then.
 const NO_RISE_S: f64 = 0.01;
 
 /// The bands of one body, and the impulses on their way to them.

@@ -262,8 +262,8 @@ impl Mean {
         (self.logarithms / self.count.max(1.0) + EULER_GAMMA).exp()
     }
 
-    /// Factor of one standard error of [`of_noise`](Self::of_noise): Var ln P = π²/6, and every wave
-    /// is counted twice.
+    /// Factor of one standard error of [`of_noise`](Self::of_noise): Var ln P = π²/6, and every
+    /// wave is counted twice.
     fn error(&self) -> f64 {
         (PI / (3.0 * self.count.max(1.0)).sqrt()).exp()
     }

@@ -72,7 +72,7 @@ pub(crate) enum AnyPort {
     Forces(ForcePort),
 }
 
-/// What a tip's handle names: the tip, and the surfaces that it may touch.
+/// Contents of a tip's handle: the tip, and the surfaces that it may touch.
 pub(crate) struct TrackedTip {
     pub(crate) tip: Tip,
     pub(crate) surfaces: Vec<SurfaceId>,

@@ -70,8 +70,8 @@ pub unsafe extern "C" fn asp_tip_new(
 }
 
 /// Moves a tip to `position_m` (x, y, z in the axes of the surfaces' body), `dt_s` after its last
-/// step, and fills `event` for `asp_report`: a begin, move or end of `contact`, felt by haptic channel
-/// `actuator`; of kind 0 where nothing is touched.
+/// step, and fills `event` for `asp_report`: a begin, move or end of `contact`, felt by haptic
+/// channel `actuator`; of kind 0 where nothing is touched.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_tip_step(
     tip: *mut asp_tip,
@@ -89,8 +89,8 @@ pub unsafe extern "C" fn asp_tip_step(
     })
 }
 
-/// Ends what a tip touches, because the game has moved the hand elsewhere: fills `event` with the end
-/// of `contact`, or with kind 0. The next step starts anew.
+/// Ends what a tip touches, because the game has moved the hand elsewhere: fills `event` with the
+/// end of `contact`, or with kind 0. The next step starts anew.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_tip_lift(tip: *mut asp_tip, contact: u64, event: *mut asp_event) -> i32 {
     enter(|| {

@@ -221,7 +221,8 @@ mod tests {
         assert!(bands.len() >= 28, "{}", bands.len());
         for band in bands.iter().filter(|band| band.centre_hz > 500.0) {
             let energy: f64 = band.parts.iter().map(|part| part.energy).sum();
-            // Noise of mean square 1 has width / (rate / 2) of it in a band: ∫ e^(−2 d t) dt of that.
+            // Noise of mean square 1 has width / (rate / 2) of it in a band: ∫ e^(−2 d t) dt of
+            // that.
             let expected = band.width_hz / (0.5 * RATE_HZ) / 46.0;
             let off_db = 10.0 * (energy / expected).log10();
             assert!(off_db.abs() < 4.0, "{} Hz: {off_db} dB", band.centre_hz);

@@ -35,8 +35,8 @@ impl Untagged {
         file.seek(SeekFrom::Start(at))?;
         let old = tail.len().checked_sub(128).filter(|&place| tail[place..].starts_with(b"TAG"));
         tail.truncate(old.unwrap_or(tail.len()));
-        // ID3v2 counts what lies behind its ten bytes, seven bits a byte. A tag that is a chunk of AIFF
-        // belongs to the file.
+        // ID3v2 counts what lies behind its ten bytes, seven bits a byte. A tag that is a chunk of
+        // AIFF belongs to the file.
         let is_chunk = |place: usize| place >= 8 && tail[place - 8..].starts_with(b"ID3 ");
         let fits = |place: &usize| match tail[*place..] {
             _ if is_chunk(*place) => false,

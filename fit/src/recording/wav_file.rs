@@ -39,8 +39,8 @@ const IDENTIFIERS: [[u8; 14]; 2] = [
 ];
 /// A size that is not known yet, or stands in `ds64`.
 const ELSEWHERE: u64 = 0xffff_ffff;
-/// Sizes from here on, where less is there, are written by programs that write into a pipe: about the
-/// most that 32 bits hold, with a sign or without.
+/// Sizes from here on, where less is there, are written by programs that write into a pipe: about
+/// the most that 32 bits hold, with a sign or without.
 const UNSAID: u64 = 0x7fff_0000;
 
 /// A WAV file.

@@ -2,7 +2,8 @@
 //!
 //! Its own relief runs over the place of contact then. The engine knows the ground's: that runs on
 //! under the contact with what the slip has over the path, in the direction of the path or along u,
-//! and stays where it came to until the contact ends. A slip up to the path's speed changes nothing.
+//! and stays where it came to until the contact ends. A slip up to the path's speed changes
+//! nothing.
 
 use crate::model::event::ContactSample;
 
@@ -14,7 +15,7 @@ const LONGEST_S: f64 = 0.25;
 /// Spin of one contact, along u and v.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Spin {
-    /// How far the ground has run on, m, and how fast it does, m/s.
+    /// Way that the ground has run on, m, and its speed, m/s.
     run_m: [f64; 2],
     runs_m_s: [f64; 2],
     /// Time and place of the last report.
