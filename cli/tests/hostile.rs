@@ -243,7 +243,7 @@ fn modes_that_no_body_has_are_refused_with_their_place() {
         ("\"frequency_hz\":700.0", "\"frequency_hz\":0.0"),
         ("\"frequency_hz\":700.0", "\"frequency_hz\":NaN"),
         ("\"amplitude\":0.3", "\"amplitude\":1e300"),
-        ("\"version\":1", "\"version\":3"),
+        ("\"version\":1", "\"version\":4"),
         ("asperity.modes", "other.modes"),
         ("\"impulse_n_s\":0.01", "\"impulse_n_s\":0.0"),
     ] {

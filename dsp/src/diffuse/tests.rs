@@ -68,9 +68,13 @@ fn a_strike_of_twice_the_momentum_is_twice_the_sound_and_equal_strikes_are_equal
     let bands = bands();
     let once = answer(&bands, (Level::detect(), 3), &[(100, 1e-3)], [66_150].into_iter());
     let twice = answer(&bands, (Level::detect(), 3), &[(100, 2e-3)], [66_150].into_iter());
-    // One falls asleep a turn before the other.
-    let louder = once.iter().zip(&twice).all(|(a, b)| 2.0 * a == *b || b.abs() < 1e-6);
-    assert!(louder && once[..=100].iter().all(|y| *y == 0.0));
+    // Resonators of the softer one fall asleep first, each below the level that counts as rest.
+    let asleep = 100.0 * SLEEP;
+    let off = once.iter().zip(&twice).map(|(a, b)| (2.0 * a - b).abs()).fold(0.0, f32::max);
+    let loud = once.iter().zip(&twice).filter(|(_, b)| b.abs() > asleep);
+    let exact = loud.clone().filter(|(a, b)| 2.0 * **a == **b).count();
+    assert!(off <= asleep && exact > loud.count() * 9 / 10, "{off}");
+    assert!(once[..=100].iter().all(|y| *y == 0.0));
     let later = answer(&bands, (Level::detect(), 3), &[(37_123, 1e-3)], [66_150].into_iter());
     assert_eq!(once[100..20_000], later[37_123..57_023]);
     let other = answer(&bands, (Level::detect(), 4), &[(100, 1e-3)], [66_150].into_iter());
