@@ -108,9 +108,9 @@ impl TipStep {
 /// One tracked tip over some surfaces; a hand has one for each finger.
 ///
 /// ```
-/// use asperity::{Engine, Surface, SurfaceFrame, Tip, TipCoupling, TipStep};
+/// use asperity::{Config, Engine, Surface, SurfaceFrame, Tip, TipCoupling, TipStep};
 ///
-/// let (mut scene, _renderer) = Engine::build(Default::default())?;
+/// let Engine { mut scene, .. } = Config::default().build()?;
 /// let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
 /// let table = scene.add_surface(Surface::flat(0.4, 0.3)?.frame(frame))?;
 /// let mut tip = Tip::new(scene.tip_surfaces(&[table])?, TipCoupling::default())?;

@@ -42,8 +42,7 @@ const CORNER: f64 = 0.4;
 const OCTAVES: usize = 5;
 /// Waves that an octave needs to be judged by.
 const FEWEST_WAVES: f64 = 40.0;
-/// Most over least power, less a standard error of each, of octaves that are level for certain, and
-/// of those that are not. Walls
+/// Most over least power of octaves that are level for certain, and of those that are not. Walls
 /// under a mosaic, sharpened, reduced or as JPEG 1.0–1.5; gravel, the most level of real grounds
 /// looked at, 1.85.
 const LEVEL: f64 = 1.45;
@@ -224,17 +223,15 @@ fn plateau(octaves: &[Mean]) -> f64 {
 
 /// The power of three octaves if they are level, nothing of it if they are not.
 fn of_level_octaves(octaves: &[Mean]) -> f64 {
-    let count: f64 = octaves.iter().map(|octave| octave.count).sum();
-    let mean = octaves.iter().map(|octave| octave.of_noise() * octave.count).sum::<f64>() / count;
+    let powers = || octaves.iter().map(Mean::of_noise);
+    let (least, most) = (powers().fold(f64::INFINITY, f64::min), powers().fold(0.0, f64::max));
     // What is stronger than a camera's is a surface.
-    if mean > MOST_LEVEL * MOST_LEVEL || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
+    if most > MOST_LEVEL * MOST_LEVEL || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
         return 0.0;
     }
-    // Few waves tell their power by a factor only.
-    let least = octaves.iter().map(|octave| octave.of_noise() * octave.error());
-    let most = octaves.iter().map(|octave| octave.of_noise() / octave.error());
-    let unevenness = most.fold(0.0, f64::max) / least.fold(f64::INFINITY, f64::min);
-    let doubt = (unevenness - LEVEL) / (NOT_LEVEL - LEVEL);
+    let doubt = (most / least - LEVEL) / (NOT_LEVEL - LEVEL);
+    let count: f64 = octaves.iter().map(|octave| octave.count).sum();
+    let mean = octaves.iter().map(|octave| octave.of_noise() * octave.count).sum::<f64>() / count;
     (1.0 - doubt).clamp(0.0, 1.0) * mean
 }
 
@@ -260,12 +257,6 @@ impl Mean {
     /// powers of noise are exponentially distributed, and E ln P = ln N − γ.
     fn of_noise(&self) -> f64 {
         (self.logarithms / self.count.max(1.0) + EULER_GAMMA).exp()
-    }
-
-    /// Factor of one standard error of [`of_noise`](Self::of_noise): Var ln P = π²/6, and every
-    /// wave is counted twice.
-    fn error(&self) -> f64 {
-        (PI / (3.0 * self.count.max(1.0)).sqrt()).exp()
     }
 }
 
