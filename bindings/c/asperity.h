@@ -930,8 +930,8 @@ int32_t asp_tip_new(struct asp_scene *scene,
                     struct asp_tip **tip);
 
 /// Moves a tip to `position_m` (x, y, z in the axes of the surfaces' body), `dt_s` after its last
-/// step, and fills `event` for `asp_report`: a begin, move or end of `contact`, felt by haptic channel
-/// `actuator`; of kind 0 where nothing is touched.
+/// step, and fills `event` for `asp_report`: a begin, move or end of `contact`, felt by haptic
+/// channel `actuator`; of kind 0 where nothing is touched.
 int32_t asp_tip_step(struct asp_tip *tip,
                      double dt_s,
                      const double *position_m,
@@ -939,8 +939,8 @@ int32_t asp_tip_step(struct asp_tip *tip,
                      int32_t actuator,
                      struct asp_event *event);
 
-/// Ends what a tip touches, because the game has moved the hand elsewhere: fills `event` with the end
-/// of `contact`, or with kind 0. The next step starts anew.
+/// Ends what a tip touches, because the game has moved the hand elsewhere: fills `event` with the
+/// end of `contact`, or with kind 0. The next step starts anew.
 int32_t asp_tip_lift(struct asp_tip *tip, uint64_t contact, struct asp_event *event);
 
 /// The number by which the mixer effect "Asperity" finds a renderer: the value of its parameter

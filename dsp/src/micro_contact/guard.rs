@@ -22,8 +22,9 @@ pub(super) const MAX_GAP_M: f64 = 0.1;
 pub(super) const MAX_PENETRATION_M: f64 = 0.02;
 /// A force that sets in at once presses a spring in to twice its static depth.
 const PRESSED_OVERSHOOT: f64 = 2.0;
-/// Time constant of the mean over the ground's rise, s (chosen: ten periods of what is felt best).
-const RISE_S: f64 = 0.04;
+/// Time constant of the mean over the ground's rise, s (chosen: many ridges of a relief, so that
+/// its own flanks are no ramp).
+const RISE_S: f64 = 0.2;
 /// Magnitudes below this are zero.
 pub(super) const VANISHING: f64 = 1e-100;
 
