@@ -70,7 +70,7 @@ impl ContactSkin {
 
 /// The dragged skin of one contact.
 pub(super) struct Drag {
-    /// None where no skin can be designed for the rate: nothing is dragged there.
+    /// Law of the skin; none where none can be designed for the rate, and nothing is dragged then.
     design: Option<Tangential>,
     state: TangentialState,
     /// True until the first row: its force has been there for long.
