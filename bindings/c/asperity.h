@@ -897,6 +897,11 @@ int32_t asp_bus_peaks(struct asp_scene *scene, float *peaks, uint32_t count);
 /// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 int32_t asp_why_silent(struct asp_scene *scene, char *reasons, uint32_t size);
 
+/// Bodies and surfaces that leave more than full scale holds, by how much, and what to turn: a line
+/// a reason, the loudest first; "" when nothing does. It renders a reference strike where one is
+/// not known yet. `size` is the room in `reasons`, bytes; what does not fit is cut. (Since 0.1.4.)
+int32_t asp_why_clipped(struct asp_scene *scene, char *reasons, uint32_t size);
+
 /// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL)
 /// is how many things.
 int32_t asp_collect(struct asp_scene *scene, uint32_t *freed);

@@ -188,9 +188,13 @@ public:
         asp_stats_init(&stats);
         return Status(asp_get_stats(get(), &stats));
     }
-    std::string why_silent() const {
+    std::string why_silent() const { return why(asp_why_silent); }
+    std::string why_clipped() const { return why(asp_why_clipped); }
+
+private:
+    std::string why(std::int32_t (*told)(asp_scene *, char *, std::uint32_t)) const {
         std::string words(4096, '\0');
-        asp_why_silent(get(), words.data(), static_cast<std::uint32_t>(words.size()));
+        told(get(), words.data(), static_cast<std::uint32_t>(words.size()));
         words.resize(words.find('\0'));
         return words;
     }

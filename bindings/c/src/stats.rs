@@ -1,10 +1,11 @@
-//! Statistics: what the engine did so far, and why it is silent.
+//! Statistics: what the engine did so far, and why it is silent or too loud.
 
 use crate::entry::{array_mut, enter};
 use crate::handles::{SCENES, asp_scene};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use crate::text;
+use asperity::Scene;
 use std::ffi::c_char;
 use std::mem::offset_of;
 
@@ -193,6 +194,24 @@ pub unsafe extern "C" fn asp_bus_peaks(scene: *mut asp_scene, peaks: *mut f32, c
 /// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
+    told(scene, reasons, size, |scene| scene.why_silent().iter().map(ToString::to_string).collect())
+}
+
+/// Bodies and surfaces that leave more than full scale holds, by how much, and what to turn: a line
+/// a reason, the loudest first; "" when nothing does. It renders a reference strike where one is
+/// not known yet. `size` is the room in `reasons`, bytes; what does not fit is cut. (Since 0.1.4.)
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_why_clipped(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
+    told(scene, reasons, size, |scene| scene.why_clipped().iter().map(ToString::to_string).collect())
+}
+
+/// Copies reasons, a line each.
+fn told(
+    scene: *mut asp_scene,
+    reasons: *mut c_char,
+    size: u32,
+    why: impl FnOnce(&mut Scene) -> Vec<String>,
+) -> i32 {
     enter(|| {
         if size == 0 {
             return Err(Failure::new(
@@ -202,9 +221,7 @@ pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_c
         }
         let room = array_mut(reasons.cast::<u8>(), size as usize, MAX_TEXT, "reasons")?;
         room[0] = 0;
-        let why = SCENES.hold(scene as usize)?.scene.why_silent();
-        let lines: Vec<String> = why.iter().map(ToString::to_string).collect();
-        text::copy(&lines.join("\n"), room);
+        text::copy(&why(&mut SCENES.hold(scene as usize)?.scene).join("\n"), room);
         Ok(())
     })
 }

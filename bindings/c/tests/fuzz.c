@@ -264,7 +264,7 @@ static void rest(void) {
     case 11: told(asp_reset(scene())); break;
     case 12: told(asp_set_time_scale(scene(), number())); break;
     case 13: stats.struct_size = size_of(sizeof stats); told(asp_get_stats(scene(), &stats)); break;
-    case 14: told(asp_why_silent(scene(), words, rnd(201))); break;
+    case 14: told((rnd(2) ? asp_why_silent : asp_why_clipped)(scene(), words, rnd(201))); break;
     case 15: told(asp_bus_peaks(scene(), peaks, rnd(70) % 65)); break;
     case 16: told(asp_record_start(scene())); break;
     case 17: told(asp_record_stop(scene(), rnd(2) ? NULL : "/nowhere/at/all")); break;

@@ -109,6 +109,7 @@ static void nulls(void) {
     REFUSED(asp_get_stats(NULL, &stats), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_bus_peaks(scene, NULL, 1), ASP_BAD_ARGUMENT, "peaks");
     REFUSED(asp_why_silent(scene, NULL, 10), ASP_BAD_ARGUMENT, "reasons");
+    REFUSED(asp_why_clipped(scene, NULL, 10), ASP_BAD_ARGUMENT, "reasons");
     REFUSED(asp_collect(NULL, NULL), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_record_start(NULL), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_record_stop(NULL, NULL), ASP_BAD_HANDLE, "scene");
@@ -208,6 +209,8 @@ static void sizes(void) {
     char text[1] = {5};
     REFUSED(asp_why_silent(scene, text, 0), ASP_BAD_ARGUMENT, "size");
     MUST(asp_why_silent(scene, text, 1) == ASP_OK && text[0] == 0);
+    REFUSED(asp_why_clipped(scene, text, 0), ASP_BAD_ARGUMENT, "size");
+    MUST(asp_why_clipped(scene, text, 1) == ASP_OK && text[0] == 0);
     REFUSED(asp_bus_peaks(scene, &sample, UINT32_MAX), ASP_BAD_ARGUMENT, "64");
     asp_body body;
     asp_body_init(&body);

@@ -10,7 +10,9 @@ use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
 use asperity::open::Overrides;
 use asperity::texture::sand::{SandThread, SandWorker};
-use asperity::{ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
+use asperity::{
+    ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, LevelPolicy, Scene, SurfaceId,
+};
 use godot::classes::{AudioServer, AudioStreamPlayer, INode, ProjectSettings, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
@@ -61,10 +63,16 @@ pub struct AsperityWorld {
     #[export]
     #[init(val = 5e-4)]
     haptic_full_scale_m: f64,
-    /// Loudness before the limiter, linear, where no scene file says it: blows reach many times
-    /// full scale.
+    /// Levels of bodies and surfaces where no scene file says them: "shared" (found by trials as
+    /// they come, with their differences kept), "each" (each thing as loud as the next) or
+    /// "as_given" (as their numbers say).
+    #[export(enum = (shared, each, as_given))]
+    #[init(val = "shared".into())]
+    levels: GString,
+    /// Loudness before the limiter, linear, where no scene file says it; with levels "as_given"
+    /// blows reach many times full scale.
     #[export]
-    #[init(val = 0.2)]
+    #[init(val = 1.0)]
     gain: f64,
     /// Godot's audio bus on which it sounds; empty: a player of the project's own plays
     /// `audio_stream()`.
@@ -316,11 +324,11 @@ impl AsperityWorld {
 
     /// What has happened so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how
     /// much limiters have turned down at most; `why_silent` says what speaks against anything being
-    /// heard.
+    /// heard, `why_clipped` what is too loud and what to turn.
     #[func]
-    fn stats(&self) -> VarDictionary {
+    fn stats(&mut self) -> VarDictionary {
         let mut told = VarDictionary::new();
-        let Some(running) = &self.running else { return told };
+        let Some(running) = &mut self.running else { return told };
         let stats = running.scene.stats();
         for (name, count) in [
             ("impacts", stats.impacts),
@@ -335,6 +343,8 @@ impl AsperityWorld {
         }
         let why: Vec<String> = running.scene.why_silent().iter().map(ToString::to_string).collect();
         told.set("why_silent", why.join("; ").as_str());
+        let why: Vec<String> = running.scene.why_clipped().iter().map(ToString::to_string).collect();
+        told.set("why_clipped", why.join("; ").as_str());
         told
     }
 
@@ -371,6 +381,7 @@ impl AsperityWorld {
                 ..ActuatorSettings::default()
             };
             let config = Config {
+                levels: self.level_policy()?,
                 sample_rate_hz: rate_hz,
                 clock,
                 actuators: vec![felt; channels],
@@ -391,6 +402,15 @@ impl AsperityWorld {
             ..Overrides::default()
         };
         Engine::from_scene(&file, &overrides).map_err(|error| error.to_string())
+    }
+
+    fn level_policy(&self) -> Result<LevelPolicy, String> {
+        match self.levels.to_string().as_str() {
+            "shared" => Ok(LevelPolicy::Shared),
+            "each" => Ok(LevelPolicy::Each),
+            "as_given" => Ok(LevelPolicy::AsGiven),
+            other => Err(format!("levels: \"{other}\" is refused; must be shared, each or as_given")),
+        }
     }
 
     /// How often it was built.

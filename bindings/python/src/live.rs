@@ -130,6 +130,11 @@ impl LiveScene {
         Ok(held(&self.inner)?.scene.why_silent().iter().map(ToString::to_string).collect())
     }
 
+    /// Bodies and surfaces that leave more than full scale holds.
+    fn why_clipped(&self) -> PyResult<Vec<String>> {
+        Ok(held(&self.inner)?.scene.why_clipped().iter().map(ToString::to_string).collect())
+    }
+
     /// Game time begins anew.
     fn reset(&self) -> PyResult<()> {
         held(&self.inner)?.scene.reset().map_err(refused)

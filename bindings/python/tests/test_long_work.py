@@ -155,6 +155,7 @@ def test_wrong_buffers_and_channel_maps_are_refused():
 def test_live_reports_are_checked_and_silence_is_explained():
     live = asp.Scene(asp.Solid("granite").on(asp.Body.stock("plate", 0.1, "stone")), sr=48_000)
     assert "Renderer::render" in live.why_silent()[0]
+    assert live.why_clipped() == []
     with pytest.raises(ValueError, match='"floor" is unknown; must be one of: surface'):
         live.begin(0.0, 1, "floor", [0.1, 0.5], 0.5)
     with pytest.raises(ValueError, match="normal_force_n"):

@@ -218,6 +218,7 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern int asp_fade_all(IntPtr scene);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_get_stats(IntPtr scene, ref Stats stats);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_why_silent(IntPtr scene, byte[] reasons, uint size);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_why_clipped(IntPtr scene, byte[] reasons, uint size);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_record_start(IntPtr scene);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_record_stop(IntPtr scene, byte[] path);
         [DllImport(Library, CallingConvention = C)]
@@ -542,10 +543,15 @@ namespace Asperity
         }
 
         /// <summary>What speaks against anything being heard or felt, a line a reason; empty when nothing does.</summary>
-        public string WhySilent()
+        public string WhySilent() { return Why(Native.asp_why_silent); }
+
+        /// <summary>What leaves more than full scale holds, by how much, and what to turn, a line a reason; empty when nothing does.</summary>
+        public string WhyClipped() { return Why(Native.asp_why_clipped); }
+
+        string Why(Func<IntPtr, byte[], uint, int> told)
         {
             var room = new byte[4096];
-            Native.Must(Native.asp_why_silent(handle, room, (uint)room.Length));
+            Native.Must(told(handle, room, (uint)room.Length));
             return Encoding.UTF8.GetString(room, 0, Array.IndexOf<byte>(room, 0));
         }
 

@@ -6,6 +6,9 @@ using UnityEngine.Audio;
 
 namespace Asperity
 {
+    /// <summary>Origin of the levels of bodies and surfaces that are added.</summary>
+    public enum LevelPolicy { AsGiven, Shared, Each }
+
     [DefaultExecutionOrder(-1000)]
     public sealed class AsperityWorld : MonoBehaviour
     {
@@ -13,8 +16,10 @@ namespace Asperity
         public AudioMixer Mixer;
         [Tooltip("The name under which the parameter Engine is exposed")]
         public string EngineParameter = "AsperityEngine";
-        [Tooltip("Loudness before the limiter: blows of a physics engine reach many times full scale")]
-        public float Gain = 0.1f;
+        [Tooltip("Levels of what is added: found by trials and shared, found for each thing, or as its numbers say")]
+        public LevelPolicy Levels = LevelPolicy.Shared;
+        [Tooltip("Loudness before the limiter; without levels that are found, blows of a physics engine reach many times full scale")]
+        public float Gain = 1f;
         [Tooltip("Haptic channels: hands, controllers")]
         public uint HapticChannels = 2;
 
@@ -36,7 +41,8 @@ namespace Asperity
             var channels = new string[System.Math.Min(System.Math.Max(1u, HapticChannels), 64u)];
             for (int channel = 0; channel < channels.Length; channel++) channels[channel] = "{ limit_peaks = true }";
             string haptics = "actuators = [" + string.Join(", ", channels) + "]\n";
-            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio + haptics);
+            string levels = "levels = \"" + (Levels == LevelPolicy.AsGiven ? "as-given" : Levels.ToString().ToLowerInvariant()) + "\"\n";
+            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: levels + audio + haptics);
             Renderer = renderer;
             Current = this;
             if (Physics.gravity.magnitude > 100f)

@@ -149,6 +149,10 @@ class Scene:
         """What speaks against anything being heard or felt, the likeliest first; empty when nothing does."""
         return self._native.why_silent()
 
+    def why_clipped(self) -> list[str]:
+        """Bodies and surfaces that leave more than full scale holds, by how much, and what to turn; empty when nothing does."""
+        return self._native.why_clipped()
+
     def reset(self) -> None:
         """Game time begins anew."""
         self._native.reset()
