@@ -409,3 +409,45 @@ fn a_surface_that_was_prepared_is_added_with_the_same_level() {
     };
     assert_eq!(heard(false), heard(true));
 }
+
+#[test]
+fn the_harder_a_blow_the_louder_it_is() {
+    for (shape, of, size_m) in [
+        (Stock::Plate, Material::CERAMIC, 0.14),
+        (Stock::Box, Material::SOFTWOOD, 0.4),
+        (Stock::Can, Material::STEEL, 0.11),
+        (Stock::Door, Material::WOOD, 2.0),
+        (Stock::Bar, Material::STEEL, 0.3),
+        (Stock::Cushion, Material::FOAM, 0.3),
+    ] {
+        let mut before = 0.0;
+        for decade in 0..6 {
+            let mut played = Played::new(live(LevelPolicy::Shared));
+            let body = played.body(Body::stock(shape, of, size_m).unwrap());
+            let impulse_n_s = 0.02 * 10f64.powi(decade);
+            played.step(Some(ContactEvent::Impact(Impact::from_impulse(body, impulse_n_s, 3.0, 0.3))));
+            (0..12).for_each(|_| played.step(None));
+            let loud = rms(&played.audio);
+            println!("{shape:?} {impulse_n_s} N·s: {:.1} dB, peak {:.2}", db(loud), peak(&played.audio));
+            assert!(loud > 0.7 * before, "{shape:?}, {impulse_n_s} N·s: {} dB lower", db(before / loud));
+            before = loud;
+        }
+    }
+}
+
+#[test]
+fn what_slides_faster_or_heavier_is_not_softer() {
+    let slid = |force_n: f64, speed_m_s: f64| {
+        let mut played = Played::new(live(LevelPolicy::Shared));
+        let rigid = played.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
+        let thing = played.body(Body::stock(Stock::Barrel, Material::WOOD, 0.9).unwrap());
+        let top = played.scene.add_surface(ground(2e-5, Material::STONE)).unwrap();
+        let [heard, _] = played.stroke(Touching::on(top).with(rigid).held_by(thing), force_n, speed_m_s);
+        db(rms(&heard))
+    };
+    for force_n in [5.0, 50.0, 300.0] {
+        let levels = [0.3, 1.0, 2.0].map(|speed_m_s| slid(force_n, speed_m_s));
+        println!("{force_n} N: {levels:.1?} dB");
+        assert!(levels.windows(2).all(|pair| pair[1] > pair[0] - 1.0), "{force_n} N: {levels:?}");
+    }
+}

@@ -4,6 +4,7 @@
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::body::Body;
 use crate::model::config::Config;
+use crate::model::diffuse::DiffuseBand;
 use crate::model::error::AddError;
 use crate::model::level_policy::LevelPolicy;
 use crate::model::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE, SILENT, STRIKE, STRIKE_REFERENCE};
@@ -12,7 +13,9 @@ use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use crate::model::stock::Stock;
 use crate::model::surface::Surface;
+use crate::prepared::stroking::elastic;
 use crate::prepared::surface::{StrokeLevel, SurfaceLevels};
+use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::micro_contact::Probe;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -21,8 +24,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// Rms towards which a stroke grows that nobody feels, full scale 1: −20 dB. Peaks are four times
 /// as high, two bodies may sound, and the growth of one stands for that of the other.
 const LOUDEST_STROKE: f64 = 0.1;
-/// Exponent of a stroke's growth with its speed.
-const SPEED_EXPONENT: f64 = 0.7;
+/// Exponent of a stroke's growth with its speed, the least that was measured on ground that is
+/// pressed hard: with a greater one what slides faster would be softer.
+const SPEED_EXPONENT: f64 = 0.4;
 /// Bodies of which the trials are kept.
 const MOST_BODIES: usize = 64;
 /// Impulse of a reference strike, N·s.
@@ -79,6 +83,61 @@ pub(crate) fn kinds(channels: &[ActuatorSettings]) -> Vec<usize> {
     kinds.into_iter().filter_map(first).collect()
 }
 
+/// Contact times for which the peak of a blow is worked out, s: each so many times the one before.
+const TIMES: usize = 14;
+const SHORTEST_S: f64 = 2e-5;
+const TIME_RATIO: f64 = 2.0;
+
+/// Peak of an impact of 1 N·s on a body, full scale 1, by the logarithm of its contact's duration.
+///
+/// ```text
+/// peak(τ) ∝ Σ |aᵢ| p(fᵢ τ)      p(x) = max((1 + (1.35 x)⁵)^(−½), min(1, 0.27 / x))
+/// ```
+/// p: envelope of the spectrum of Hertz' pulse (within 4 dB), and the share with which a mode
+/// follows a slow force. aᵢ, fᵢ: modes, and bands at the root of their energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BlowPeaks([f64; TIMES]);
+
+impl BlowPeaks {
+    /// Peaks of nothing that rings.
+    const SILENT: Self = Self([0.0; TIMES]);
+
+    /// Peaks of a body, of which the reference strike's is known.
+    fn of(body: &Body, reference_per_n_s: f64) -> Self {
+        let bands = body.model.diffuse.iter().flat_map(|diffuse| &diffuse.bands);
+        let energy = |band: &DiffuseBand| band.parts.iter().map(|part| part.energy).sum::<f64>();
+        let bands = bands.map(|band| (band.centre_hz, energy(band).sqrt()));
+        let modes = body.model.modes.iter().map(|mode| (mode.frequency_hz, mode.amplitude.abs()));
+        let lines: Vec<(f64, f64)> =
+            if body.model.modes.is_empty() { bands.collect() } else { modes.collect() };
+        let peak = |time_s: f64| lines.iter().map(|(hz, a)| a * share(hz * time_s)).sum::<f64>();
+        let unit = reference_per_n_s / peak(reference_time_s(body.material)).max(f64::MIN_POSITIVE);
+        Self(std::array::from_fn(|k| unit * peak(SHORTEST_S * TIME_RATIO.powi(k as i32))))
+    }
+
+    /// Peak of a pulse.
+    fn at(&self, pulse: HertzPulse) -> f64 {
+        let steps = libm::log2(pulse.contact_time_s / SHORTEST_S) / libm::log2(TIME_RATIO);
+        let steps = steps.clamp(0.0, (TIMES - 1) as f64);
+        let below = (steps as usize).min(TIMES - 2);
+        let [low, high] = [self.0[below], self.0[below + 1]];
+        pulse.impulse_n_s * (low + (steps - below as f64) * (high - low))
+    }
+}
+
+/// Share of a mode's answer to an impulse that is left of one of this duration, periods of it.
+fn share(periods: f64) -> f64 {
+    let spectrum = (1.0 + libm::pow(1.35 * periods, 5.0)).sqrt().recip();
+    f64::max(spectrum, f64::min(1.0, 0.27 / periods))
+}
+
+/// Duration of the reference strike on a body of this material, s.
+fn reference_time_s(material: Material) -> f64 {
+    let [steel, body] = [Material::STEEL, material].map(elastic);
+    HertzContact::new(&steel, &body, STRIKE.radius_m, STRIKE.mass_kg)
+        .map_or(SHORTEST_S, |contact| contact.contact_time_s(STRIKE.speed_m_s))
+}
+
 /// Level of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BodyLevel {
@@ -89,8 +148,8 @@ pub(crate) struct BodyLevel {
     pub(crate) own_gain: f64,
     /// Gain of impacts beside strokes.
     pub(crate) strike_gain: f64,
-    /// Peak of an impact of 1 N·s, full scale 1; 0 where nothing is known.
-    pub(crate) peak_per_n_s: f64,
+    /// Peaks of impacts; 0 where nothing is known.
+    pub(crate) blows: BlowPeaks,
 }
 
 /// Trials of a scene, and the levels that its things share.
@@ -106,7 +165,8 @@ pub(crate) struct Levels {
 
 impl BodyLevel {
     /// Level of nothing that rings.
-    pub(crate) const SILENT: Self = Self { gain: 1.0, own_gain: 1.0, strike_gain: 1.0, peak_per_n_s: 0.0 };
+    pub(crate) const SILENT: Self =
+        Self { gain: 1.0, own_gain: 1.0, strike_gain: 1.0, blows: BlowPeaks::SILENT };
 
     /// Level of a body as its numbers say.
     pub(crate) fn given(body: &Body) -> Self {
@@ -114,9 +174,9 @@ impl BodyLevel {
         Self { strike_gain, ..Self::SILENT }
     }
 
-    /// The factor that keeps an impact of this impulse within full scale.
-    pub(crate) fn blow_factor(&self, impulse_n_s: f64) -> f64 {
-        let peak = self.peak_per_n_s * impulse_n_s;
+    /// The factor that keeps an impact within full scale.
+    pub(crate) fn blow_factor(&self, pulse: HertzPulse) -> f64 {
+        let peak = self.blows.at(pulse);
         (1.0 + peak * peak).sqrt().recip()
     }
 }
@@ -159,8 +219,8 @@ impl Levels {
         let within = (gain * trial.burst).max(1.0);
         let own = config.levels.factor(1.0, within, &mut self.strikes);
         let strike_gain = body.strike_gain.unwrap_or(own);
-        let peak_per_n_s = gain * strike_gain * trial.struck / STRIKE_N_S;
-        Ok(BodyLevel { gain, own_gain: reference / found, strike_gain, peak_per_n_s })
+        let blows = BlowPeaks::of(body, gain * strike_gain * trial.struck / STRIKE_N_S);
+        Ok(BodyLevel { gain, own_gain: reference / found, strike_gain, blows })
     }
 
     /// Peak of an impact of 1 N·s on a body whose gains are 1.

@@ -128,8 +128,9 @@ impl Scene {
                 ContactEvent::Moved { contact, sample, emphasis }
             }
             ContactEvent::Impact(impact) => {
+                let Some(pulse) = self.pulse(&impact) else { return event };
                 let bodies = [Some(impact.body), impact.other, impact.holder].into_iter().flatten();
-                let factor = bodies.map(|id| self.level_of(id).blow_factor(impact.impulse_n_s()));
+                let factor = bodies.map(|id| self.level_of(id).blow_factor(pulse));
                 ContactEvent::Impact(Impact { gain: impact.gain * factor.fold(1.0, f64::min), ..impact })
             }
             ContactEvent::End { .. } => event,

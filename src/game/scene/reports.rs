@@ -254,16 +254,18 @@ impl Scene {
         }
     }
 
-    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
+    /// The pulse of an impact; none where its numbers are no contact.
+    pub(super) fn pulse(&self, impact: &Impact) -> Option<HertzPulse> {
         let known = self.bodies.get(impact.body.0);
         let material = known.map_or(Body::DEFAULT_MATERIAL, |body| body.material);
         let contact =
-            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
-                .map_err(|_| Refusal::UnknownBody)?;
-        let pulse = HertzPulse {
-            impulse_n_s: impact.impulse_n_s(),
-            contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
-        };
+            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg);
+        let contact_time_s = contact.ok()?.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S);
+        Some(HertzPulse { impulse_n_s: impact.impulse_n_s(), contact_time_s })
+    }
+
+    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
+        let pulse = self.pulse(impact).ok_or(Refusal::UnknownBody)?;
         let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
         if pulse.impulse_n_s == 0.0 {
             return Ok(());
