@@ -421,7 +421,8 @@ fn the_harder_a_blow_the_louder_it_is() {
         (Stock::Cushion, Material::FOAM, 0.3),
     ] {
         let mut before = 0.0;
-        for decade in 0..6 {
+        // From 10 g to 100 kg at 1.5 m/s.
+        for decade in 0..5 {
             let mut played = Played::new(live(LevelPolicy::Shared));
             let body = played.body(Body::stock(shape, of, size_m).unwrap());
             let impulse_n_s = 0.02 * 10f64.powi(decade);
