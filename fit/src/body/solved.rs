@@ -4,8 +4,9 @@
 //! 1. No mode rings longer than the sound supports ([`bound_rings`]).
 //! 2. Of what is no sum of modes, and wherever the struck body would be too loud or worse than
 //!    silence, amplitudes and phases are solved anew on the recording ([`last_solve`]).
-//! 3. Of what is no sum of modes, modes of unknown decay go, the least known first, and the others
-//!    are solved anew; all that go may cost [`MISSED`]. One that is missed by more stays.
+//! 3. Of what is no sum of modes, modes of unknown decay go, the least known first, and those that
+//!    the recording does not have later ([`unsupported`]), and the others are solved anew; all that
+//!    go may cost [`MISSED`]. One that is missed by more stays.
 //!
 //! Of 55 household recordings (29 looked at before) 15 were explained worse than silence and none
 //! is; 961 modes had a decay whose deviation is above half of it, and 435 have.
@@ -15,6 +16,7 @@ use crate::body::struck::{lead, struck};
 use crate::noise::noise_floor::NoiseFloor;
 use crate::options::Found;
 use crate::proof::known_decay::{bound_rings, bounded, least_known};
+use crate::proof::late_support::unsupported;
 use crate::proof::warning::Warning;
 use crate::sinusoid::partial::Partial;
 use crate::ways::analysis::subtract;
@@ -92,13 +94,24 @@ impl Solving<'_> {
         Solved { left: left(&early), partials, early, lead, over }
     }
 
+    /// Modes, at the first fitted sample, that the recording does not have later.
+    fn unsupported(&self, body: &Solved) -> Vec<Partial> {
+        let sound = &self.samples[self.found.onset - body.lead..self.found.end];
+        let played = struck(&body.early, sound.len());
+        let residual: Vec<f64> = sound.iter().zip(played).map(|(y, s)| y - s).collect();
+        let gone = unsupported(&body.early, &residual, self.rate_hz);
+        let both = body.early.iter().zip(&body.partials);
+        both.filter(|(early, _)| gone.contains(early)).map(|(_, partial)| *partial).collect()
+    }
+
     /// The body without the modes of unknown decay that it does not miss.
     fn without_unknown(&self, mut best: Solved) -> Solved {
         let may_leave = MISSED * best.left;
         let mut missed: Vec<f64> = Vec::new();
         let mut most = usize::MAX;
         for _ in 0..ROUNDS {
-            let mut doomed = least_known(&best.partials, self.noise, self.count());
+            let mut doomed = self.unsupported(&best);
+            doomed.extend(least_known(&best.partials, self.noise, self.count()));
             doomed.retain(|p| !missed.contains(&p.omega));
             doomed.truncate(most);
             if doomed.is_empty() {

@@ -4,6 +4,7 @@
 //! | file | from → to |
 //! |---|---|
 //! | `known_decay` | modes whose decay the sound does not tell → fewer, none of which rings longer than it supports |
+//! | `late_support` | modes → those that the recording does not have later |
 //! | `pruning` | partials → proven partials with standard deviations |
 //! | `ringing` | segment → is there anything but noise; partials → which stand out of steep noise |
 //! | `suspicion` | partials → hum, no decay, not exponential |
@@ -11,6 +12,7 @@
 //! | [`warning`] | what is said of all this |
 
 pub(crate) mod known_decay;
+pub(crate) mod late_support;
 pub(crate) mod pruning;
 pub(crate) mod ringing;
 pub(crate) mod rumble;
