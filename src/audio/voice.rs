@@ -29,7 +29,9 @@ use crate::audio::shared::{Shared, Stretch};
 use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
+use crate::prepared::area::Nestling;
 use crate::prepared::overlay::TileCells;
+use crate::prepared::tip_force::TipForce;
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::hertz::FORCE_HISTORY;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
@@ -44,7 +46,6 @@ use path::Path;
 use profile::Along;
 use rolling::Rolling;
 use skin::{ContactSkin, Drag};
-use tap::Tip;
 
 /// State of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +82,8 @@ pub(crate) struct Voice {
     cells: TileCells,
     between: Between,
     rolling: Rolling,
-    tip: Tip,
+    nestling: Nestling,
+    tip: TipForce,
     pad: Pad,
     drag: Drag,
     ac: AcCoupling,
@@ -121,7 +123,8 @@ impl Voice {
             cells: TileCells::default(),
             between: Between::default(),
             rolling: Rolling::default(),
-            tip: Tip::default(),
+            nestling: Nestling::default(),
+            tip: TipForce::default(),
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
@@ -215,7 +218,8 @@ impl Voice {
         }
         let PathPoint { velocity_m_s, normal_force_n, .. } = self.path.last;
         let room = &mut scratch.profile.rough;
-        self.exciters.press(self.loudness(shared, position, seat, room), velocity_m_s);
+        let loudness = self.loudness(shared, position, seat, room);
+        self.exciters.press(loudness, velocity_m_s);
         if self.rolling.rolls() {
             self.roll(shared, seat, room, Rolling::turn);
         }

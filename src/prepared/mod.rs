@@ -18,3 +18,4 @@ pub(crate) mod spot;
 pub(crate) mod stiffness;
 pub(crate) mod stroking;
 pub(crate) mod surface;
+pub(crate) mod tip_force;

@@ -227,6 +227,10 @@ impl Pyramid {
         let mut blur = [(0, 0.0); MAX_BLOCK];
         for (n, blur) in blur[..path.len()].iter_mut().enumerate() {
             *blur = self.blur(finest, path.velocity_m_s[n], path.footprint_m[n]);
+            if path.bare {
+                // One level says how the ground bends.
+                blur.1 = 0.0;
+            }
         }
         let mut start = 0;
         while start < path.len() {
@@ -266,7 +270,8 @@ impl Pyramid {
     ) {
         places.forget();
         self.levels[level].sample_block::<SLOPES>(position_m, None, places, finer);
-        if let Some(next) = self.levels.get(level + 1) {
+        let blends = blur.iter().any(|(_, blend)| *blend != 0.0);
+        if let Some(next) = self.levels.get(level + 1).filter(|_| blends) {
             places.forget();
             next.sample_block::<SLOPES>(position_m, None, places, coarser);
         } else {

@@ -2,13 +2,14 @@
 
 use super::profile::{Along, Profile};
 use super::skin::ContactSkin;
-use super::tap::Tip;
 use super::{PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Shared, Stretch};
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
+use crate::prepared::area::Nestling;
 use crate::prepared::surface::SurfaceSlot;
+use crate::prepared::tip_force::TipForce;
 use asperity_dsp::actuator::ContactOutputState;
 use asperity_dsp::butterworth;
 use asperity_dsp::trajectory::Trajectory;
@@ -48,7 +49,7 @@ impl Voice {
         self.fades.begin(self.role.gain, lands, shared);
         self.between = Default::default();
         let force_n = self.path.begin(sample, slot, stamp);
-        self.tip = Tip::begin(sample);
+        self.tip = TipForce::begin(sample);
         self.rolling.tell(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
@@ -75,6 +76,7 @@ impl Voice {
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
         self.skin = ContactSkin::default();
+        self.nestling = Nestling::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
         let loudness = self.loudness(shared, position, seat, &mut scratch.profile.rough);
