@@ -147,10 +147,10 @@ fn a_weak_blow_does_not_cut_off_a_strong_one_and_ten_a_second_ring_into_each_oth
         3 => game.strike_block(0.01),
         _ => {}
     });
-    let one = alone(1.0);
-    let (from, to) = (4 * TICK, 10 * TICK);
-    let kept = db(rms(&both.0[from..to]) / rms(&one[from..to]));
-    assert!(kept.abs() < 1.5, "{kept} dB");
+    let (one, weak) = (alone(1.0), alone(0.01));
+    let left: Vec<f32> = both.0.iter().zip(&one).map(|(both, one)| both - one).collect();
+    let added = db(peak(&left) / peak(&weak));
+    assert!(added.abs() < 0.2, "the strong one stays, the weak one comes to it: {added} dB");
 }
 
 #[test]
@@ -370,7 +370,13 @@ fn a_thing_three_hundred_times_as_large_is_added_and_heard_or_refused_in_words()
         let mut game = Game::new();
         match Body::stock(Stock::Block, Material::WOOD, 0.1 * size) {
             Ok(body) => {
-                let body = game.scene.add_body(body).unwrap();
+                let body = match game.scene.add_body(body) {
+                    Ok(body) => body,
+                    Err(error) => {
+                        assert!(error.to_string().contains("mass_kg"), "{error}");
+                        continue;
+                    }
+                };
                 let (heard, _) = game.run(60, |game, tick| {
                     if tick == 0 {
                         game.strike(body, 1.0);

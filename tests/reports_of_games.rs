@@ -279,8 +279,7 @@ impl Tap for MeanForce {
 #[test]
 fn a_probe_thrown_off_the_crest_of_a_roof_presses_as_told_or_is_told() {
     let (mut told, mut tried) = (0, 0);
-    for name in ["finger", "nail", "stylus", "rigid", "sole"] {
-        let probe = if name == "finger" { Probe::default() } else { probe_by_name(name).unwrap() };
+    for (name, probe) in asperity::PROBE_PRESETS {
         for (roof_m, slope) in [(0.5, 0.5), (1.0, 0.5), (0.5, 0.2), (0.25, 0.1)] {
             for (speed_m_s, force_n) in [(0.3, 0.5), (1.0, 0.5), (1.0, 2.0)] {
                 let width = (roof_m * 400.0) as usize;
@@ -306,12 +305,13 @@ fn a_probe_thrown_off_the_crest_of_a_roof_presses_as_told_or_is_told() {
                 let what = format!("{name}, roofs of {roof_m} m, {slope} m/m, {speed_m_s} m/s, {force_n} N");
                 println!("{what}: {:+.2} %, {} blows, told {leapt}", 100.0 * off, take.stats.blows);
                 assert!(off.abs() <= 0.01 || leapt, "{what}: {:+.2} % and no word", 100.0 * off);
+                let slow = name == "fingertip" && speed_m_s < 0.5;
+                assert!(!(slow && leapt), "{what}: a slow finger stays on the ground");
                 (told, tried) = (told + usize::from(leapt), tried + 1);
             }
         }
     }
     println!("{told} of {tried} told");
-    assert!(told < tried / 2, "{told} of {tried} are told");
 }
 
 #[test]

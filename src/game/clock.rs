@@ -89,7 +89,9 @@ impl Clock {
             Mapping::Exact(zero, _) => *zero = zero.map(|zero| zero * ratio),
             Mapping::Live(live) => live.at_rate(sample_rate_hz),
         }
-        (self.sample_rate_hz, self.last) = (sample_rate_hz, Stamp::at(self.last.samples() * ratio));
+        let there = |stamp: Stamp| Stamp::at(stamp.samples() * ratio);
+        self.waiting.iter_mut().for_each(|stamp| *stamp = there(*stamp));
+        (self.sample_rate_hz, self.last) = (sample_rate_hz, there(self.last));
     }
 
     /// The newest stamp.
