@@ -234,7 +234,7 @@ fn haptics_after_ten_minutes_are_those_of_the_first() {
         game.run(ticks, |game, tick| {
             let turns = (base + tick) / 60;
             let t = f64::from((base + tick) % 60) * TICK_S;
-            let (way, sign) = if turns % 2 == 0 { (t, 1.0) } else { (1.0 - t, -1.0) };
+            let (way, sign) = if turns.is_multiple_of(2) { (t, 1.0) } else { (1.0 - t, -1.0) };
             let sample = ContactSample::new([0.1 + 0.1 * way / SIDE_M, 0.5], 0.6).sliding([0.1 * sign, 0.0]);
             let event = if base + tick == 0 {
                 ContactEvent::begin(ContactId(1), game.surface, Actuator(0), sample)
