@@ -6,6 +6,7 @@ mod another_rate;
 mod apply;
 mod blocks;
 mod buses;
+mod callbacks;
 mod changes;
 #[path = "common/closed_forms.rs"]
 mod closed_forms;

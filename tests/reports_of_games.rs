@@ -258,6 +258,62 @@ fn a_heavy_stick_that_leaps_over_ribs_is_told_with_its_remedy_and_a_finger_is_no
     assert_eq!(over_ribs(Probe::default(), FORCE_N), (0, false));
 }
 
+/// Mean of the contact's force and of what presses, over whole roofs.
+struct MeanForce {
+    over: std::ops::Range<u64>,
+    contact_n: f64,
+    pressed_n: f64,
+}
+
+impl Tap for MeanForce {
+    fn contact(&mut self, block: &ContactBlock<'_>) {
+        for (sample, row) in (block.first_sample..).zip(block.contact_samples) {
+            if self.over.contains(&sample) {
+                self.contact_n += row.contact_force_n;
+                self.pressed_n += row.normal_force_n;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_probe_thrown_off_the_crest_of_a_roof_presses_as_told_or_is_told() {
+    let (mut told, mut tried) = (0, 0);
+    for (name, probe) in asperity::PROBE_PRESETS {
+        for (roof_m, slope) in [(0.5, 0.5), (1.0, 0.5), (0.5, 0.2), (0.25, 0.1)] {
+            for (speed_m_s, force_n) in [(0.3, 0.5), (1.0, 0.5), (1.0, 2.0)] {
+                let width = (roof_m * 400.0) as usize;
+                let height = |i: usize| {
+                    let along = (i as f64 + 0.5) / width as f64;
+                    0.5 * roof_m * slope * (1.0 - (2.0 * along - 1.0).abs())
+                };
+                let values = (0..width).map(height).collect::<Vec<_>>().repeat(4);
+                let extent = Extent { width_m: roof_m, height_m: SIDE_M, relief_m: 1.0 };
+                let map = HeightMap::new(&Raster { width, height: 4, values }, extent, Wrap::Repeat).unwrap();
+                let roofs = Surface::new(map, roof_m, SIDE_M).unwrap().micro_relief_m(0.0);
+                let roofs_s = roof_m / speed_m_s;
+                let roofs_heard = (3.0 / roofs_s).ceil();
+                let seconds = (roofs_heard + 2.0) * roofs_s;
+                let log = stroke(roof_m, speed_m_s, force_n, seconds);
+                let first = (1.5 * roofs_s * RATE_HZ) as u64;
+                let over = first..first + (roofs_heard * roofs_s * RATE_HZ) as u64;
+                let mut mean = MeanForce { over, contact_n: 0.0, pressed_n: 0.0 };
+                let config = Config { probe, ..si_config() };
+                let take = render_tapped(config, roofs, &log, &Options::default(), &mut mean);
+                let off = mean.contact_n / mean.pressed_n - 1.0;
+                let leapt = take.why_silent.iter().any(|told| matches!(told, SilentBecause::Leapt { .. }));
+                let what = format!("{name}, roofs of {roof_m} m, {slope} m/m, {speed_m_s} m/s, {force_n} N");
+                println!("{what}: {:+.2} %, {} blows, told {leapt}", 100.0 * off, take.stats.blows);
+                assert!(off.abs() <= 0.01 || leapt, "{what}: {:+.2} % and no word", 100.0 * off);
+                let slow = name == "fingertip" && speed_m_s < 0.5;
+                assert!(!(slow && leapt), "{what}: a slow finger stays on the ground");
+                (told, tried) = (told + usize::from(leapt), tried + 1);
+            }
+        }
+    }
+    println!("{told} of {tried} told");
+}
+
 #[test]
 fn the_clean_stroke_is_what_the_others_are_held_to() {
     let log = stroke(SIDE_M, SPEED_M_S, FORCE_N, 2.0);

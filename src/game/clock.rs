@@ -15,10 +15,15 @@ mod live;
 use crate::model::clock_mode::ClockMode;
 use crate::model::stamp::Stamp;
 use live::{BREAK_S, Followed, Live};
+use std::collections::VecDeque;
 
 /// An impact that was reported longer ago while audio stood still is not played, s.
 const STALE_S: f64 = 0.1;
-
+/// Strikes that are known to wait: two are several.
+const MOST_WAITING: usize = 64;
+/// Distance from what was played last to what is reported when game time is tied back: as though
+/// twenty strikes a second went on, s.
+const AFTER_TIE_S: f64 = 0.05;
 /// A game time mapped to the audio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stamped {
@@ -35,9 +40,11 @@ pub(crate) struct Clock {
     sample_rate_hz: f64,
     mapping: Mapping,
     last: Stamp,
-    /// Strikes of an earlier epoch have come too late.
     epoch: u64,
+    stale_before: u64,
     stands: Stands,
+    /// Stamps of strikes that wait, or that the audio has just come to.
+    waiting: VecDeque<Stamp>,
 }
 
 /// Place of the audio, and since when.
@@ -64,7 +71,15 @@ impl Clock {
             ClockMode::Exact => Mapping::Exact(Some(0.0), 1.0),
             ClockMode::Live { max_lead_s } => Mapping::Live(Live::new(max_lead_s, sample_rate_hz)),
         };
-        Self { sample_rate_hz, mapping, last: Stamp::default(), epoch: 0, stands: Stands::UNKNOWN }
+        Self {
+            sample_rate_hz,
+            mapping,
+            last: Stamp::default(),
+            epoch: 0,
+            stale_before: 0,
+            stands: Stands::UNKNOWN,
+            waiting: VecDeque::with_capacity(MOST_WAITING),
+        }
     }
 
     /// Clock at another rate; a live one ties itself anew.
@@ -74,7 +89,9 @@ impl Clock {
             Mapping::Exact(zero, _) => *zero = zero.map(|zero| zero * ratio),
             Mapping::Live(live) => live.at_rate(sample_rate_hz),
         }
-        (self.sample_rate_hz, self.last) = (sample_rate_hz, Stamp::at(self.last.samples() * ratio));
+        let there = |stamp: Stamp| Stamp::at(stamp.samples() * ratio);
+        self.waiting.iter_mut().for_each(|stamp| *stamp = there(*stamp));
+        (self.sample_rate_hz, self.last) = (sample_rate_hz, there(self.last));
     }
 
     /// The newest stamp.
@@ -82,15 +99,28 @@ impl Clock {
         self.last
     }
 
-    /// It counts on whenever what was stamped before has come too late: strikes of an earlier one
-    /// are dropped.
+    /// It counts on whenever game time is tied back: what was stamped in an earlier epoch is due.
     pub(crate) fn epoch(&self) -> u64 {
         self.epoch
+    }
+
+    /// Strikes of an epoch before this have come too late.
+    pub(crate) fn stale_before(&self) -> u64 {
+        self.stale_before
     }
 
     /// Notes that what was stamped before has come too late.
     pub(crate) fn let_go(&mut self) {
         self.epoch += 1;
+        self.stale_before = self.epoch;
+        self.waiting.clear();
+    }
+
+    /// Notes that a strike is sent.
+    pub(crate) fn note_strike(&mut self, stamp: Stamp) {
+        if self.is_live() && self.waiting.back() != Some(&stamp) && self.waiting.len() < MOST_WAITING {
+            self.waiting.push_back(stamp);
+        }
     }
 
     /// Tests whether game time may run backwards.
@@ -126,6 +156,16 @@ impl Clock {
         (self.last, self.stands) = (Stamp::whole(position), Stands::UNKNOWN);
     }
 
+    /// Notes that game time is tied back, and whether strikes that wait have come too late: one
+    /// sounds at once, of several only a bang would be heard.
+    fn tie_back(&mut self, stale: bool) {
+        if stale {
+            self.let_go();
+        } else {
+            self.epoch += 1;
+        }
+    }
+
     /// Sample of a game time, never before an earlier one; `position` is the next sample that the
     /// audio half will render.
     pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
@@ -136,13 +176,24 @@ impl Clock {
                 Followed { sample: target + zero, jumped: false, repaced: false }
             }
             Mapping::Live(live) => {
-                let anew = self.stands.look(time_s, position);
-                self.epoch += u64::from(anew);
-                if anew {
-                    live.let_go();
-                }
+                let stands = self.stands.look(time_s, position);
+                let untied = live.is_untied();
                 let followed = live.follow(time_s, position as f64);
-                Followed { jumped: followed.jumped || anew, ..followed }
+                let apart = AFTER_TIE_S * self.sample_rate_hz;
+                self.waiting.retain(|stamp| stamp.samples() + apart >= position as f64);
+                let back = (followed.jumped || untied) && Stamp::at(followed.sample) < self.last;
+                if stands || back && !self.waiting.is_empty() {
+                    let sample = position as f64 + apart;
+                    live.tie(time_s, sample, stands);
+                    self.tie_back(stands || self.waiting.len() > 1);
+                    Followed { sample, jumped: true, ..followed }
+                } else {
+                    if back {
+                        self.tie_back(false);
+                        self.last = Stamp::at(followed.sample);
+                    }
+                    followed
+                }
             }
         };
         if jumped {
@@ -158,13 +209,13 @@ impl Stands {
     const UNKNOWN: Self = Self { position: 0, since_s: f64::INFINITY, long: false };
 
     /// Notes where the audio stands at a report, and tells whether game time is to be tied anew:
-    /// once it has stood for longer than any block, then again and again, and when it goes on.
+    /// once it has stood for longer than any block, then again and again.
     fn look(&mut self, time_s: f64, position: u64) -> bool {
         let goes_on = position != self.position;
         let limit_s = if self.long { STALE_S } else { BREAK_S };
-        let anew = if goes_on { self.long } else { time_s - self.since_s > limit_s };
+        let anew = !goes_on && time_s - self.since_s > limit_s;
         if goes_on || anew || time_s < self.since_s {
-            *self = Self { position, since_s: time_s, long: anew && !goes_on };
+            *self = Self { position, since_s: time_s, long: anew || self.long && !goes_on };
         }
         anew
     }

@@ -84,12 +84,12 @@ impl Recording {
     }
 
     /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has
-    /// dropped: the clock's epoch is `epoch` by now.
-    pub(crate) fn settle(&mut self, time_s: f64, epoch: u64) {
+    /// dropped: those of an epoch of the clock before `stale_before`.
+    pub(crate) fn settle(&mut self, time_s: f64, stale_before: u64) {
         let come_to = |waits: &Waiting| waits.line.t.max(waits.told_s) < time_s;
         while self.waiting.front().is_some_and(come_to) {
             let Some(Waiting { line, epoch: then, .. }) = self.waiting.pop_front() else { return };
-            if !(then < epoch && (is_strike(&line) || matches!(line.event, LogEvent::Move { .. }))) {
+            if !(then < stale_before && (is_strike(&line) || matches!(line.event, LogEvent::Move { .. }))) {
                 self.keep(line);
             }
         }
@@ -153,8 +153,8 @@ impl Recording {
             },
         };
         if self.waiting.back().is_some_and(|waits| waits.line.t > time_s) {
-            // Game time was tied anew: what lay further ahead comes now.
-            self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(time_s));
+            // Game time was tied back: what lay further ahead comes now.
+            self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(told_s));
         }
         self.waiting.push_back(Waiting { line: LogLine { t: time_s, event }, epoch, told_s });
     }

@@ -126,10 +126,10 @@ pub enum SilentBecause {
         /// Longest contact of an impact, s.
         longest_s: f64,
     },
-    /// A probe leapt and came down hard; rendered as it is.
+    /// A probe leapt and came down hard, or was thrown off a crest; rendered as it is.
     #[error(
-        "{count} times a probe that had left the ground came down with more than 30 times what pressed it; a probe that is \
-         softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
+        "{count} times a probe that had left the ground came down with more than 30 times what pressed it, or was thrown so far that it \
+         presses more than was told; a probe that is softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
     )]
     Leapt {
         /// Number of times.

@@ -26,11 +26,10 @@ macro_rules! counters {
             pub(crate) bus_peak_bits: Box<[AtomicU32]>,
             /// Resets that the game half has asked for.
             pub(crate) resets_asked: AtomicU64,
-            /// The newest stamp: what was stamped further ahead before game time was tied anew is
-            /// due by then.
-            pub(crate) newest_bits: AtomicU64,
-            /// The game clock's epoch: strikes of an earlier one have come too late.
+            /// The game clock's epoch: what was stamped in an earlier one is due at once.
             pub(crate) epoch: AtomicU64,
+            /// Strikes of an epoch before this have come too late.
+            pub(crate) stale_before: AtomicU64,
         }
 
         impl Counters {
@@ -67,7 +66,8 @@ counters! {
     shortened_collisions,
     /// Onsets of contact found by the micro-contact model.
     micro_collisions,
-    /// Blows of a probe that had left the ground: contact forces beyond thirty times what pressed.
+    /// Blows of a probe that had left the ground: contact forces beyond thirty times what pressed,
+    /// or flights off a crest that its leash has ended.
     blows,
     /// Contacts that would have rubbed a body that another one rubs already, a count for each 64
     /// samples: one at a time sticks and slips.
@@ -99,9 +99,9 @@ counters! {
     quarantined,
     /// Events that arrived after the sample they were stamped for.
     late,
-    /// Impacts dropped because audio stood still (for more than 0.25 s of game time) when they were
-    /// reported, and more than 0.1 s had gone by when it went on; or because a reset, a pause or a
-    /// fade of everything came before their turn.
+    /// Impacts dropped because audio stood still when they were reported, and more than 0.1 s had
+    /// gone by when it went on, or game time was tied to it anew before the turn of several; or
+    /// because a reset, a pause or a fade of everything came before their turn.
     stale,
     /// Impacts dropped because they came sooner after one that was as strong than the least time of
     /// their body ([`Body::least_time_s`](crate::Body::least_time_s)).
@@ -134,7 +134,7 @@ pub(crate) struct Counts {
     pub(crate) shortened: u64,
     /// States that were no longer finite and begun anew.
     pub(crate) resets: u64,
-    /// Contact forces beyond thirty times what pressed.
+    /// Contact forces beyond thirty times what pressed, and flights that a leash has ended.
     pub(crate) blows: u64,
 }
 

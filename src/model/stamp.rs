@@ -16,16 +16,6 @@ impl Stamp {
         Self(sample.saturating_mul(Self::PER_SAMPLE))
     }
 
-    /// As a number for an atomic cell.
-    pub(crate) fn to_bits(self) -> u64 {
-        self.0
-    }
-
-    /// From such a number.
-    pub(crate) fn from_bits(bits: u64) -> Self {
-        Self(bits)
-    }
-
     /// Stamp so many samples later.
     pub(crate) fn later(self, samples: u64) -> Self {
         Self(self.0.saturating_add(samples.saturating_mul(Self::PER_SAMPLE)))

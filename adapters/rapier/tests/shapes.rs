@@ -3,8 +3,8 @@
 //! lands.
 
 use asperity::{
-    Actuator, Body, Config, ContactEvent, Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock,
-    Surface, SurfaceId,
+    Actuator, Body, Config, ContactEvent, Engine, Impact, LevelPolicy, Material, ModalModel, Renderer, Scene,
+    Stock, Surface, SurfaceId,
 };
 use asperity_rapier::{Adapter, Kind, Mapping, Notice, Thing};
 use rapier3d::prelude::*;
@@ -347,4 +347,215 @@ fn a_mesh_mapping_on_what_is_no_mesh_and_a_world_in_centimetres_are_told_once() 
     assert!(warnings[1].collider.is_some() && warnings[1].to_string().contains("plane"));
     world.run(0.5);
     assert!(world.adapter.warnings().is_empty());
+}
+
+/// A plate of 1 m by 2 cm by 1 m whose upper face moves as cosines, in its own frame.
+fn shaped_plate() -> ModalModel {
+    const SIDE: usize = 33;
+    let across = |i: usize| i as f64 / (SIDE - 1) as f64 - 0.5;
+    let points: Vec<[f64; 3]> =
+        (0..SIDE * SIDE).map(|at| [across(at / SIDE), 0.01, across(at % SIDE)]).collect();
+    let squares = (0..SIDE * (SIDE - 1)).filter(|at| at % SIDE != SIDE - 1);
+    let triangles: Vec<[usize; 3]> =
+        squares.flat_map(|a| [[a, a + 1, a + SIDE], [a + 1, a + SIDE + 1, a + SIDE]]).collect();
+    let orders = [(1.0, 0.0), (0.0, 2.0), (1.0, 1.0), (2.0, 2.0), (3.0, 1.0)];
+    let turn = std::f64::consts::PI;
+    let motion = |(a, b): (f64, f64)| -> Vec<[f64; 3]> {
+        let at =
+            |[x, _, z]: &[f64; 3]| [0.0, (turn * a * (x + 0.5)).cos() * (turn * b * (z + 0.5)).cos(), 0.0];
+        points.iter().map(at).collect()
+    };
+    let modes: Vec<String> = (0..orders.len())
+        .map(|m| {
+            let hz = 300.0 * (1.0 + 0.7 * m as f64);
+            format!(
+                r#"{{"frequency_hz": {hz:?}, "decay_per_s": 5.0, "amplitude": 1.0, "phase_rad": 1.5707963267948966}}"#
+            )
+        })
+        .collect();
+    let motions: Vec<Vec<[f64; 3]>> = orders.into_iter().map(motion).collect();
+    let file = format!(
+        r#"{{"format": "asperity.modes", "version": 2, "unit": "relative", "modes": [{}], "shapes": {{
+            "points_m": {points:?}, "triangles": {triangles:?}, "gains": {:?},
+            "phi_per_sqrt_kg": {motions:?}, "struck_point": 0}}}}"#,
+        modes.join(","),
+        vec![1.0; orders.len()],
+    );
+    ModalModel::parse(&file).unwrap()
+}
+
+#[test]
+fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_hand() {
+    let mut levels = Vec::new();
+    for (x, z) in [(0.0, 0.0), (0.4, 0.0), (0.45, 0.45), (0.21, -0.37)] {
+        let mut world = World::new(faces());
+        let plate = world.scene.add_body(shaped_plate()).unwrap();
+        let lies = RigidBodyBuilder::fixed().translation(Vector::new(0.0, 1.0, 0.0));
+        let thing = Thing::of(Material::STEEL).ringing(plate);
+        world.insert(lies, ColliderBuilder::cuboid(0.5, 0.01, 0.5), thing);
+        let ball = of_mass(ColliderBuilder::ball(0.02), 0.05);
+        let falling = at(x, 1.2, z).linvel(Vector::new(0.0, -2.0, 0.0));
+        world.insert(falling, ball, Thing::of(Material::STEEL));
+        world.run(0.6);
+        let told = world.impacts();
+        let Engine { mut scene, mut renderer, .. } = {
+            let mut config = Config::default();
+            (config.sample_rate_hz, config.audio[0].limit) = (48_000.0, false);
+            config.build().unwrap()
+        };
+        let by_hand = scene.add_body(shaped_plate()).unwrap();
+        let impact = Impact { body: by_hand, at_m: None, direction: None, ..told[0] };
+        let impact = impact.at([f64::from(x), 0.01, f64::from(z)]);
+        scene.report(0.0, ContactEvent::Impact(impact)).unwrap();
+        let mut audio = vec![0.0; 28_800];
+        renderer.render(&mut [&mut vec![0.0; audio.len()]], &mut [&mut audio]);
+        let level_db = |sound: &[f32]| {
+            let loudest = sound.iter().fold(0.0f32, |most, x| most.max(x.abs()));
+            let begins = sound.iter().position(|x| x.abs() > 1e-3 * loudest).unwrap();
+            let power: f64 = sound[begins..begins + 9600].iter().map(|x| f64::from(*x).powi(2)).sum();
+            10.0 * power.log10()
+        };
+        let (through, hand) = (level_db(&world.heard), level_db(&audio));
+        println!("({x}, {z}): {through:.3} dB, by hand {hand:.3}, {} blows", told.len());
+        assert!((through - hand).abs() < 0.1, "({x}, {z}): {through} dB, by hand {hand}");
+        levels.push(hand);
+    }
+    assert!(levels[2] - levels[0] > 3.0, "places differ: {levels:?}");
+}
+
+/// A collider 0.6 m long and wide.
+fn shape_of(name: &str) -> ColliderBuilder {
+    match name {
+        "ball" => ColliderBuilder::ball(0.3),
+        "box" => ColliderBuilder::cuboid(0.3, 0.3, 0.3),
+        "capsule" => ColliderBuilder::capsule_z(0.3, 0.3),
+        "cylinder" => ColliderBuilder::cylinder(0.3, 0.3),
+        "cone" => ColliderBuilder::cone(0.3, 0.3),
+        _ => {
+            let corners: Vec<Vector> = [-0.3, 0.3]
+                .into_iter()
+                .flat_map(|x| [-0.3, 0.0].map(|y| [x, y]))
+                .flat_map(|[x, y]| [-0.2, 0.2].map(|z| Vector::new(x, y, z)))
+                .collect();
+            ColliderBuilder::convex_hull(&corners).unwrap()
+        }
+    }
+}
+
+#[test]
+fn whatever_scrapes_or_rolls_has_a_contact_or_says_why_not() {
+    let mut touching = 0;
+    for shape in ["ball", "box", "capsule", "cylinder", "cone", "hull"] {
+        for case in ["slides", "rolls", "spins", "belt", "wall", "hand", "unmapped"] {
+            let mapping = if case == "unmapped" { Mapping::Mesh(vec![[0.0, 0.0]]) } else { faces() };
+            let mut world = World::new(mapping);
+            if case == "belt" {
+                let (_, belt) = world.physics.insert(
+                    RigidBodyBuilder::fixed(),
+                    ColliderBuilder::cuboid(19.0, 0.1, 2.0).translation(Vector::new(0.0, -0.09, 0.0)),
+                );
+                let running = Thing::of(Material::STONE).running([1.0, 0.0, 0.0]);
+                world.adapter.insert(belt, running.with_surface(world.top, faces()));
+            }
+            let (mut place, mut speed) = (Vector::new(-10.0, 0.305, 0.0), Vector::new(2.0, 0.0, 0.0));
+            if case == "wall" {
+                place = Vector::new(20.305, -10.0, 0.0);
+                world.physics.gravity = Vector::new(-9.81, 0.0, 0.0);
+                speed = Vector::new(0.0, -2.0, 0.0);
+            }
+            let body = match case {
+                "hand" => RigidBodyBuilder::kinematic_velocity_based()
+                    .translation(place - Vector::new(0.0, 0.01, 0.0)),
+                _ => RigidBodyBuilder::dynamic().translation(place).can_sleep(false),
+            };
+            let body = match case {
+                "spins" => {
+                    body.enabled_translations(false, true, false).angvel(Vector::new(0.0, 20.0, -20.0))
+                }
+                "rolls" => body.linvel(speed).angvel(Vector::new(0.0, 0.0, -2.0 / 0.3)),
+                "belt" => body.lock_rotations(),
+                _ => body.linvel(speed).lock_rotations(),
+            };
+            let body = if shape == "cylinder" || shape == "cone" {
+                body.rotation(Vector::new(std::f32::consts::FRAC_PI_2, 0.0, 0.0))
+            } else {
+                body
+            };
+            let collider = of_mass(shape_of(shape), 20.0)
+                .friction(if case == "rolls" { 0.8 } else { 0.05 })
+                .active_collision_types(ActiveCollisionTypes::all());
+            let thing = Thing::of(Material::STEEL);
+            let thing = if case == "hand" { thing.felt_by(Actuator(0)) } else { thing };
+            world.insert(body, collider, thing);
+            let mut warned = Vec::new();
+            for step in 0..60 {
+                let told = world.events.len();
+                world.run(STEP_S);
+                // What has just struck leaves again, or slides from the next step on.
+                let is_impact = |event: &ContactEvent| matches!(event, ContactEvent::Impact(_));
+                let struck = world.events[told..].iter().any(is_impact);
+                warned.extend(world.adapter.warnings().into_iter().map(|warning| warning.notice));
+                let silent = world.scene.why_silent();
+                for touch in world.adapter.touches().filter(|touch| touch.kind != Kind::Rests) {
+                    touching += 1;
+                    let says = touch.is_unplaced && warned.contains(&Notice::Unplaced) || !silent.is_empty();
+                    assert!(
+                        touch.contact.is_some() || struck || says,
+                        "{shape} {case}, step {step}: {touch:?}, {warned:?}, {silent:?}"
+                    );
+                }
+            }
+            assert_eq!(world.scene.stats().refused, 0, "{shape} {case}");
+        }
+    }
+    println!("{touching} touches");
+    assert!(touching > 1000, "{touching} touches");
+}
+
+#[test]
+fn from_a_gram_to_a_hundred_tonnes_at_any_speed_nothing_is_refused() {
+    let mut rng = asperity_dsp::rng::Rng::new(52);
+    for run in 0..48 {
+        let mass_kg = 1e-3 * 10f64.powf(8.0 * rng.uniform());
+        let speed_m_s = 1e-3 * 10f64.powf(6.0 * rng.uniform());
+        let spin_rad_s = 60f64.powf(rng.uniform());
+        let half_m = (0.01 + 0.5 * rng.uniform()) as f32;
+        let mut world = World::new(faces());
+        let collider = match run % 3 {
+            0 => ColliderBuilder::ball(half_m),
+            1 => ColliderBuilder::cuboid(half_m, half_m, half_m),
+            _ => ColliderBuilder::cylinder(half_m, half_m),
+        };
+        let (along, down) = ((speed_m_s * rng.uniform()) as f32, -(speed_m_s * rng.uniform()) as f32);
+        let body = at(-15.0, 1.1 * half_m, 0.0).linvel(Vector::new(along, down, 0.0)).ccd_enabled(true);
+        let body = body.angvel(Vector::new(spin_rad_s as f32, 0.0, -spin_rad_s as f32));
+        world.insert(body, of_mass(collider, mass_kg as f32), Thing::of(Material::STONE));
+        world.run(0.5);
+        let stats = world.scene.stats();
+        let what = format!("{mass_kg:.3} kg, {speed_m_s:.3} m/s, {spin_rad_s:.1} rad/s");
+        assert_eq!(stats.refused, 0, "{what}: {:?}", world.scene.why_silent());
+        assert!(world.heard.iter().all(|x| x.is_finite()), "{what}");
+    }
+}
+
+#[test]
+fn a_spinning_ball_is_heard_the_louder_the_faster_it_slips() {
+    let mut before_db = f64::NEG_INFINITY;
+    for spin_rad_s in [3.0f32, 6.0, 12.0, 25.0, 60.0] {
+        let mut world = World::new(faces());
+        let ball = of_mass(ColliderBuilder::ball(0.3), 20.0).friction(0.0);
+        let ball = ball.friction_combine_rule(CoefficientCombineRule::Min);
+        let wheel = at(0.0, 0.301, 0.0).can_sleep(false).enabled_translations(false, true, false);
+        let wheel = world.insert(wheel, ball, Thing::of(Material::STEEL));
+        let spin = |physics: &mut PhysicsWorld| {
+            physics.bodies[wheel].set_angvel(Vector::new(0.0, 0.0, spin_rad_s), true);
+        };
+        world.run_by(1.0, spin);
+        world.run_by(1.0, spin);
+        let level_db = world.level_db();
+        println!("{spin_rad_s} rad/s: {level_db:.1} dB");
+        assert!(level_db > before_db + 1.0, "{spin_rad_s} rad/s: {level_db} dB after {before_db}");
+        before_db = level_db;
+    }
+    assert!(before_db > -60.0);
 }

@@ -61,8 +61,6 @@ impl Renderer {
         self.position = (old.position as f64 * ratio / every as f64).round() as u64 * every;
         self.counters.position.store(self.position, Relaxed);
         self.resets = old.resets;
-        // Of the other rate.
-        self.counters.newest_bits.store(u64::MAX, Relaxed);
         (self.muted, self.paused) = (old.muted, old.paused);
         self.silent.extend(old.contacts.into_iter().take(self.max_contacts));
         for (channel, control) in self.channels.iter_mut().zip(old.haptic) {

@@ -20,8 +20,8 @@ impl Renderer {
     pub(super) fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let to_event = match self.from_game.peek() {
-            Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
-                let sample = in_order(&self.counters, *stamp).sample();
+            Some(Message::Event { stamp, epoch, .. } | Message::Strike { stamp, epoch, .. }) => {
+                let sample = turn(&self.counters, self.position, *stamp, *epoch).sample();
                 usize::try_from(sample.saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
             }
             _ => usize::MAX,
@@ -30,11 +30,12 @@ impl Renderer {
     }
 
     pub(super) fn apply_due(&mut self) {
-        while let Some(message) = self.from_game.peek() {
-            let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
+        loop {
+            let ended = self.time_has_ended();
+            let Some(message) = self.from_game.peek() else { return };
             let due = match message {
-                Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
-                    ended || in_order(&self.counters, *stamp).sample() <= self.position
+                Message::Event { stamp, epoch, .. } | Message::Strike { stamp, epoch, .. } => {
+                    ended || turn(&self.counters, self.position, *stamp, *epoch).sample() <= self.position
                 }
                 Message::Reset => true,
                 // Each of these may send something home; it waits until there is room, and there is
@@ -55,27 +56,27 @@ impl Renderer {
             Message::Reset => self.resets += 1,
             // It waited for a time that has ended.
             Message::Event { stamp, .. } | Message::Strike { stamp, .. }
-                if in_order(&self.counters, stamp).sample() > self.position =>
+                if self.time_has_ended() && stamp.sample() > self.position =>
             {
                 Counters::add(&self.counters.superseded, 1);
             }
             // It is elsewhere by now, and leaps there instead of running after what was missed.
             Message::Event { epoch, event: ContactEvent::Moved { .. }, .. }
-                if epoch < self.counters.epoch.load(Relaxed) =>
+                if epoch < self.counters.stale_before.load(Relaxed) =>
             {
                 Counters::add(&self.counters.superseded, 1);
             }
-            Message::Event { stamp, event, place, .. } => {
-                let stamp = in_order(&self.counters, stamp);
+            Message::Event { stamp, epoch, event, place } => {
+                let stamp = turn(&self.counters, self.position, stamp, epoch);
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);
                 self.put(&event, place);
             }
-            Message::Strike { epoch, .. } if epoch < self.counters.epoch.load(Relaxed) => {
+            Message::Strike { epoch, .. } if epoch < self.counters.stale_before.load(Relaxed) => {
                 Counters::add(&self.counters.stale, 1);
             }
-            Message::Strike { stamp, body, spot, other, holder, felt, pulse, .. } => {
-                let stamp = in_order(&self.counters, stamp);
+            Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse } => {
+                let stamp = turn(&self.counters, self.position, stamp, epoch);
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
                 self.strike(body, &spot, &pulse, stamp);
@@ -136,6 +137,11 @@ impl Renderer {
         }
     }
 
+    /// Tests whether a reset waits behind what is next.
+    fn time_has_ended(&self) -> bool {
+        self.counters.resets_asked.load(Relaxed) != self.resets
+    }
+
     fn note_arrival(&self, stamp: Stamp) {
         Counters::add(&self.counters.events, 1);
         Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
@@ -173,8 +179,9 @@ impl Renderer {
     }
 }
 
-/// Time at which something stamped so is due: where game time was tied anew, not after what was
-/// reported since.
-fn in_order(counters: &Counters, stamp: Stamp) -> Stamp {
-    stamp.min(Stamp::from_bits(counters.newest_bits.load(Relaxed)))
+/// Time at which it is the turn of something stamped so in an epoch of the game's clock, with the
+/// audio at `position`: where game time was tied back since, at once.
+fn turn(counters: &Counters, position: u64, stamp: Stamp, epoch: u64) -> Stamp {
+    let tied_back = epoch < counters.epoch.load(Relaxed);
+    if tied_back { stamp.min(Stamp::whole(position)) } else { stamp }
 }

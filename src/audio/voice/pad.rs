@@ -29,6 +29,8 @@ pub(super) struct Pad {
     resets_told: u32,
     /// True where a blow was under way at the last row.
     in_blow: bool,
+    /// True where the last row hung from its leash.
+    hangs: bool,
 }
 
 impl Pad {
@@ -42,6 +44,7 @@ impl Pad {
             landing_m_s: 0.0,
             resets_told: 0,
             in_blow: false,
+            hangs: false,
         }
     }
 
@@ -57,7 +60,8 @@ impl Pad {
 
     /// Another contact begins.
     pub(super) fn begin(&mut self, probe: &PreparedProbe, ground: Ground, force_n: f64) {
-        (self.stiff_for, self.landing_m_s, self.in_blow) = (None, 0.0, false);
+        (self.stiff_for, self.landing_m_s) = (None, 0.0);
+        (self.in_blow, self.hangs) = (false, false);
         self.stiffen(probe, ground, force_n);
     }
 
@@ -116,10 +120,14 @@ impl Pad {
         let resets = self.state.resets();
         counts.resets = u64::from(resets.wrapping_sub(std::mem::replace(&mut self.resets_told, resets)));
         counts.blows = 0;
+        let leash_m = self.model.probe().leash_m;
         for row in rows {
             let in_blow = row.contact_force_n > BLOW * row.normal_force_n.max(LIGHTEST_N);
-            counts.blows += u64::from(in_blow && !self.in_blow);
-            self.in_blow = in_blow;
+            // Thrown so far off a crest that the leash pulls it down: it presses more than it is
+            // pressed.
+            let hangs = row.pad_m - row.height_m > leash_m && row.normal_force_n > LIGHTEST_N;
+            counts.blows += u64::from(in_blow && !self.in_blow || hangs && !self.hangs);
+            (self.in_blow, self.hangs) = (in_blow, hangs);
         }
     }
 

@@ -10,13 +10,16 @@
 //! | sends ticks in bursts | leads of up to [`BREAK_S`] within a burst | nothing: stamps keep their distances |
 //! | reports again and again while it stands | stamps that are the same | nothing |
 //! | pauses, restarts at 0, skips, stamps one event wrongly | a stamp and the audio part by more than [`BREAK_S`] | tied anew, counted |
-//! | goes on while the audio stands still | reports of more than [`BREAK_S`] at one position | tied anew each 0.1 s and when the audio goes on, counted; strikes from before a tie are dropped |
-//! | runs ahead of the audio for good | no stamp within a window comes close | tied anew, counted |
+//! | hitches, and catches up in a burst | a stamp that comes more than [`LATE_S`] late | tied anew, counted: the burst keeps its distances |
+//! | goes on while the audio stands still | reports of more than [`BREAK_S`] at one position | tied anew each 0.1 s, counted; strikes from before a tie are dropped |
+//! | runs ahead of the audio for good, as after a shorter gap | no stamp within a window comes close | its time runs faster by [`HURRY`] until one does |
 //! | runs in slow motion or fast | the smallest lead drifts by the same share in window after window | its pace is followed, counted |
 
 /// A stamp that parts from the audio by more than this is no jitter and no burst, s: eight ticks at
 /// 60 Hz are 117 ms apart.
 pub(super) const BREAK_S: f64 = 0.25;
+/// A stamp that comes later than this comes from a game that has hitched, s: three ticks at 50 Hz.
+const LATE_S: f64 = 0.06;
 /// Lateness that is the clocks' and not the network's or the frame's, s.
 const SLIGHTLY_LATE_S: f64 = 0.002;
 /// Share of a larger lateness that moves the mapping.
@@ -27,6 +30,9 @@ const CREEP_SAMPLES: f64 = 0.2;
 /// … and this share of the smallest lead of the last window, so that a latency nobody needs goes
 /// within seconds.
 const CREEP_SHARE: f64 = 0.01;
+/// … or, while every stamp lies too far ahead, this share of the time that goes by: distances
+/// shrink by as much, and nothing that waits is thrown onto what is reported now.
+const HURRY: f64 = 0.05;
 /// Length of a window in which the smallest lead is looked for, s of audio.
 const WINDOW_S: f64 = 0.3;
 /// Events a window needs to say something.
@@ -70,6 +76,8 @@ struct Tie {
     before: Option<(f64, f64)>,
     drift: Option<f64>,
     least_lead: f64,
+    /// No stamp of the last window came close to the audio.
+    ahead: bool,
 }
 
 /// The smallest of what tells how far the game is ahead, since `began`.
@@ -106,11 +114,6 @@ impl Live {
         self.pace = 1.0;
     }
 
-    /// Forgets the tie, but not the pace.
-    pub fn let_go(&mut self) {
-        self.tied = None;
-    }
-
     /// Game seconds a second of audio.
     pub fn pace(&self) -> f64 {
         self.pace
@@ -120,7 +123,7 @@ impl Live {
     pub fn follow(&mut self, time_s: f64, position: f64) -> Followed {
         let break_samples = BREAK_S * self.sample_rate_hz;
         let Some(mut tie) = self.tied.take() else {
-            self.tie(time_s, position);
+            self.tie_anew(time_s, position);
             return Followed { sample: position, jumped: false, repaced: false };
         };
         if time_s == tie.latest.0 {
@@ -129,9 +132,10 @@ impl Live {
             self.tied = Some(tie);
             return Followed { sample, jumped: false, repaced: false };
         }
-        let step = (time_s - tie.latest.0) * self.samples_per_s() - (position - tie.latest.1);
+        let passed = (time_s - tie.latest.0) * self.samples_per_s();
+        let step = passed - (position - tie.latest.1);
         if step.abs() > break_samples {
-            self.tie(time_s, position);
+            self.tie_anew(time_s, position);
             return Followed { sample: position, jumped: true, repaced: false };
         }
         tie.latest = (time_s, position);
@@ -141,11 +145,12 @@ impl Live {
         tie.window.least_lead = tie.window.least_lead.min(lead);
         let mut jumped = false;
         let mut sample = lead + position;
-        if lead.abs() > break_samples {
+        if lead > break_samples || -lead > LATE_S * self.sample_rate_hz {
             (tie.time_s, tie.sample, sample, jumped) = (time_s, position, position, true);
             tie.window.least_lead = 0.0;
         } else if lead >= 0.0 {
-            tie.sample -= lead.min(CREEP_SAMPLES + CREEP_SHARE * tie.least_lead);
+            let hurries = if tie.ahead { HURRY * passed.max(0.0) } else { 0.0 };
+            tie.sample -= lead.min(hurries.max(CREEP_SAMPLES + CREEP_SHARE * tie.least_lead));
         } else if -lead <= SLIGHTLY_LATE_S * self.sample_rate_hz {
             (tie.sample, sample) = (tie.sample - lead, position);
         } else {
@@ -153,7 +158,7 @@ impl Live {
         }
         let mut repaced = false;
         if position - tie.window.began >= WINDOW_S * self.sample_rate_hz {
-            jumped |= self.look_back(&mut tie);
+            self.look_back(&mut tie);
             repaced = self.weigh_pace(&mut tie, time_s, sample);
         }
         tie.latest_sample = sample;
@@ -165,28 +170,39 @@ impl Live {
         self.sample_rate_hz / self.pace
     }
 
-    fn tie(&mut self, time_s: f64, position: f64) {
+    /// Tests whether the next stamp holds at the next sample.
+    pub fn is_untied(&self) -> bool {
+        self.tied.is_none()
+    }
+
+    /// Ties game time `time_s` to a sample; what is known of the game's pace is forgotten, or not.
+    pub fn tie(&mut self, time_s: f64, sample: f64, forget: bool) {
+        match &mut self.tied {
+            Some(tie) if !forget => {
+                (tie.time_s, tie.sample, tie.latest_sample) = (time_s, sample, sample);
+            }
+            _ => self.tie_anew(time_s, sample),
+        }
+    }
+
+    fn tie_anew(&mut self, time_s: f64, sample: f64) {
         self.tied = Some(Tie {
             time_s,
-            sample: position,
-            latest: (time_s, position),
-            latest_sample: position,
-            window: Window::at(position),
+            sample,
+            latest: (time_s, sample),
+            latest_sample: sample,
+            window: Window::at(sample),
             before: None,
             drift: None,
             least_lead: 0.0,
+            ahead: false,
         });
     }
 
-    /// At the end of a window: ties anew a game that is ahead for good. Whether it was.
-    fn look_back(&self, tie: &mut Tie) -> bool {
-        let least_lead = tie.window.least_lead.max(0.0);
-        let ahead = least_lead > self.max_lead;
-        if ahead {
-            tie.sample -= least_lead;
-        }
-        tie.least_lead = if ahead { 0.0 } else { least_lead };
-        ahead
+    /// At the end of a window: notes by how much a game is ahead.
+    fn look_back(&self, tie: &mut Tie) {
+        tie.least_lead = tie.window.least_lead.max(0.0);
+        tie.ahead = tie.least_lead > self.max_lead;
     }
 
     /// At the end of a window: follows another pace, if two windows in a row agree about it.

@@ -52,7 +52,7 @@ impl Scene {
     /// Keeps what the audio half has come to, at `position`, since the last report.
     pub(super) fn settle_recording(&mut self, position: u64) {
         if let Some(recording) = &mut self.recording {
-            recording.settle(position as f64 / self.config.inner_rate_hz(), self.clock.epoch());
+            recording.settle(position as f64 / self.config.inner_rate_hz(), self.clock.stale_before());
         }
     }
 
@@ -63,7 +63,13 @@ impl Scene {
             recording.drop_strikes();
         }
         self.clock.let_go();
+        self.show_epochs();
+    }
+
+    /// Shows the audio half what comes too late.
+    pub(super) fn show_epochs(&self) {
         self.counters.epoch.store(self.clock.epoch(), Relaxed);
+        self.counters.stale_before.store(self.clock.stale_before(), Relaxed);
     }
 
     /// Description of a surface for a recording.

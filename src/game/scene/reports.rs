@@ -70,8 +70,7 @@ impl Scene {
         let position = self.counters.position.load(Relaxed);
         self.settle_recording(position);
         let stamped = self.clock.stamp(time_s, position);
-        self.counters.newest_bits.store(stamped.stamp.to_bits(), Relaxed);
-        self.counters.epoch.store(self.clock.epoch(), Relaxed);
+        self.show_epochs();
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
@@ -108,7 +107,8 @@ impl Scene {
         if least_time_s == 0.0 {
             return false;
         }
-        let now = stamp.samples();
+        // Where game time stands, as in a menu, that of the audio goes on.
+        let now = stamp.samples().max(self.counters.position.load(Relaxed) as f64);
         let impulse = impact.impulse_n_s();
         let least = least_time_s * self.config.inner_rate_hz();
         let before = self.sounded.get(&impact.body);
@@ -276,6 +276,7 @@ impl Scene {
         let channel = impact.actuator.or(impact.holder.map(|_| Actuator(0)));
         let felt = channel
             .map(|channel| Felt { channel: usize::from(channel.0), probe: impact.probe.map(ProbeId::index) });
+        self.clock.note_strike(stamp);
         self.send_event(Message::Strike {
             stamp,
             epoch: self.clock.epoch(),

@@ -20,6 +20,7 @@ func _initialize() -> void:
 	await what_a_material_repeats_is_felt_repeated()
 	await what_rolls_is_softer_than_what_slides()
 	await a_strike_gain_turns_blows_down()
+	await a_blow_sounds_as_where_it_lands()
 	await a_blow_that_is_felt_stays_within_full_scale()
 	await a_world_that_is_built_again_takes_everything_along()
 	await a_scene_is_freed_while_it_plays()
@@ -208,6 +209,47 @@ func what_rolls_is_softer_than_what_slides() -> void:
 	var slides: float = await heard_rolling(NAN)
 	var rolls: float = await heard_rolling(0.0)
 	check("what rolls is softer than what slides", rolls > 1e-6 and rolls < 0.7 * slides, "rms %.6f beside %.6f" % [rolls, slides])
+
+
+# A strip of 1 m whose only mode moves as the cosine of half a turn along it.
+func write_strip(path: String) -> void:
+	var points := []
+	var motion := []
+	var triangles := []
+	for step in 17:
+		for side in 2:
+			points.append([step / 16.0, 0.01, 0.1 * side])
+			motion.append([0.0, cos(PI * step / 16.0), 0.0])
+		if step < 16:
+			var a := 2 * step
+			triangles.append([a, a + 1, a + 2])
+			triangles.append([a + 1, a + 3, a + 2])
+	var mode := {"frequency_hz": 400.0, "decay_per_s": 5.0, "amplitude": 0.01, "phase_rad": PI / 2}
+	var shapes := {"points_m": points, "triangles": triangles, "gains": [0.01], "phi_per_sqrt_kg": [motion], "struck_point": 0}
+	var file := FileAccess.open(path, FileAccess.WRITE)
+	file.store_string(JSON.stringify({"format": "asperity.modes", "version": 2, "unit": "relative", "modes": [mode], "shapes": shapes}))
+	file.close()
+
+
+func a_blow_sounds_as_where_it_lands() -> void:
+	write_strip("user://strip.modes.json")
+	var peaks := []
+	for x in [0.0, 0.25, 0.5]:
+		var world := made("", "", "")
+		var sound := world.audio_stream().instantiate_playback()
+		var body := AsperityBody.new()
+		body.modes_file = "user://strip.modes.json"
+		world.add_child(body)
+		check("it is struck at %.2f m" % x, world.report_impact(body.body_id(), 0.5, 0.01, 0.005, "steel", -1, Vector3(x, 0.01, 0.05)), world.last_error())
+		var peak := 0.0
+		for tick in 10:
+			await physics_frame
+			for frame in sound.mix_audio(1.0, 735):
+				peak = maxf(peak, absf(frame.x))
+		peaks.append(peak)
+		await gone(world)
+	var halfway_db := 20 * log(peaks[1] / peaks[0]) / log(10)
+	check("a blow sounds as where it lands", peaks[0] > 1e-9 and absf(halfway_db + 3.01) < 0.1 and peaks[2] < 0.01 * peaks[0], "%.2f dB, %s" % [halfway_db, peaks])
 
 
 func a_strike_gain_turns_blows_down() -> void:
