@@ -329,6 +329,9 @@ fn tables_of_other_programs_become_bodies_that_the_engine_reads() {
     assert_eq!(fit(folder, &bar)["positions"], 2);
     assert_eq!(asperity_model(folder, "b.modes.json").positions, [vec![0.2, -0.9]]);
     fit(folder, &["c.csv", "-o", "c.modes.json"]);
+    // A spreadsheet's tabs, refused as "no header of a sound file".
+    put("d.tsv", "Mode\tFrequency [Hz]\tLoss factor\n1\t100\t0.004\n2\t250\t0.006\n");
+    assert_eq!(fit(folder, &["d.tsv", "-o", "d.modes.json"])["modes"], 2);
     // What was exported is imported again, and a modes file can be rescaled.
     fit(folder, &["a.csv", "-o", "again.modes.json"]);
     assert_eq!(modes(folder, "a.modes.json"), modes(folder, "again.modes.json"));

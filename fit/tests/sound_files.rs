@@ -169,12 +169,18 @@ fn what_cannot_be_read_is_named_in_one_line() {
     let of = |format: Vec<u8>| riff(b"RIFF", &[chunk(b"fmt ", &format), chunk(b"data", &pcm16())]);
     let mut own = extensible(1, 16, 16);
     own[30] = 9;
-    let cases: [(&str, Vec<u8>, &str); 15] = [
+    let cases: [(&str, Vec<u8>, &str); 21] = [
         ("mp3", [b"\xff\xfb\x90".to_vec(), vec![0; 99]].concat(), "MP3"),
         ("tag alone", [b"ID3\x04".to_vec(), vec![0; 99]].concat(), "zeros"),
         ("aiff", b"FORM\0\0\0\x10AIFFCOMM".to_vec(), "AIFF"),
         ("m4a", b"\0\0\0\x20ftypM4A \0\0\0\0".to_vec(), "M4A"),
         ("caf", b"caff\0\x01\0\0desc".to_vec(), "CAF"),
+        ("au", b".snd\0\0\0\x18\0\0\0\0".to_vec(), "AU"),
+        ("webm", b"\x1a\x45\xdf\xa3\0\0\0\0\0\0\0\0".to_vec(), "WebM"),
+        ("8svx", b"FORM\0\0\0\x108SVXVHDR".to_vec(), "no AIFF"),
+        ("gsm", aiff_c(b"GSM ", 16, &pcm16()), "AIFF packed in a way that is not read"),
+        ("pointer", b"version https://git-lfs.github.com/spec/v1".to_vec(), "Git LFS"),
+        ("page", b"<!DOCTYPE html><html>".to_vec(), "web page"),
         ("text", b"this is no sound at all".to_vec(), "no header"),
         ("zeros", vec![0; 400], "zeros"),
         ("avi", b"RIFF\x10\0\0\0AVI LIST".to_vec(), "no WAVE"),
@@ -226,19 +232,59 @@ fn tag(version: u8, bytes: usize) -> Vec<u8> {
 fn aiff() -> Vec<u8> {
     let little = pcm16();
     let sound: Vec<u8> = little.as_chunks::<2>().0.iter().flat_map(|[low, high]| [*high, *low]).collect();
-    let frames = (little.len() / 4) as u32;
+    form(b"AIFF", 16, &[], &sound)
+}
+
+/// AIFF (or AIFF-C, whose format ends with `packing`) of two channels of so many bits.
+fn form(kind: &[u8; 4], bits: u16, packing: &[u8], sound: &[u8]) -> Vec<u8> {
+    let frames = (sound.len() / usize::from(bits / 4)) as u32;
     let mut common = vec![0, 2];
     common.extend(frames.to_be_bytes());
-    common.extend([0, 16]);
+    common.extend(bits.to_be_bytes());
     // The rate as 80 bits.
     let rate = 44_100_u64;
     let exponent = 63 - rate.leading_zeros();
     common.extend((16_383 + exponent as u16).to_be_bytes());
     common.extend((rate << (63 - exponent)).to_be_bytes());
+    common.extend(packing);
     let piece = |name: &[u8], body: &[u8]| [name, &(body.len() as u32).to_be_bytes(), body].concat();
     let body =
-        [b"AIFF".to_vec(), piece(b"COMM", &common), piece(b"SSND", &[vec![0; 8], sound].concat())].concat();
-    piece(b"FORM", &body)
+        [kind.to_vec(), piece(b"COMM", &common), piece(b"SSND", &[vec![0; 8], sound.to_vec()].concat())];
+    piece(b"FORM", &body.concat())
+}
+
+/// AIFF-C of a packing: its four letters, and a name of no letters.
+fn aiff_c(packing: &[u8; 4], bits: u16, sound: &[u8]) -> Vec<u8> {
+    form(b"AIFC", bits, &[packing.as_slice(), &[0, 0]].concat(), sound)
+}
+
+#[test]
+fn aiff_c_of_either_byte_order_and_of_floats_is_the_same_sound_to_the_bit() {
+    assert_same("sowt", &aiff_c(b"sowt", 16, &pcm16()));
+    let big = |x: i16| x.to_be_bytes().to_vec();
+    assert_same("NONE", &aiff_c(b"NONE", 16, &data(big)));
+    let float = |x: i16| (f32::from(x) / 32_768.0).to_be_bytes().to_vec();
+    assert_same("fl32", &aiff_c(b"fl32", 32, &data(float)));
+    let double = |x: i16| (f64::from(x) / 32_768.0).to_be_bytes().to_vec();
+    assert_same("fl64", &aiff_c(b"fl64", 64, &data(double)));
+}
+
+/// Every code of ITU-T G.711, from WAV and from AIFF-C, which two decoders read.
+#[test]
+fn recordings_of_telephones_are_the_same_in_wav_and_aiff_c() {
+    let codes: Vec<u8> = (0..=255).flat_map(|code| [0x55, code]).collect();
+    for (name, packing, tag, known) in [
+        ("a-law", b"alaw", 6, [(0xd5, 8), (0x55, -8), (0xaa, 32_256), (0x2a, -32_256)]),
+        ("u-law", b"ulaw", 7, [(0xff, 0), (0x7f, 0), (0x80, 32_124), (0x00, -32_124)]),
+    ] {
+        let wav = riff(b"RIFF", &[chunk(b"fmt ", &format(tag, 8, 2)), chunk(b"data", &codes)]);
+        let wav = read(name, &wav).unwrap().samples;
+        let aiff = read(name, &aiff_c(packing, 8, &codes)).unwrap().samples;
+        assert_eq!((wav.len(), &wav), (256, &aiff), "{name}");
+        for (code, value) in known {
+            assert_eq!(wav[code], f64::from(value) / 32_768.0, "{name} {code:#x}");
+        }
+    }
 }
 
 #[test]

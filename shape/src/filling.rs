@@ -112,7 +112,7 @@ impl Body {
         peel(&mut kept, delaunay.points());
         let mut mesh = VolumeMesh { points: delaunay.points().to_vec(), tets: kept };
         self.keep_one_part(&mut mesh, told)?;
-        let mut mesh = mesh.checked(told)?;
+        let mut mesh = mesh.checked(told).map_err(|error| self.of_walls(error))?;
         facets::round_out(&mut mesh, &self.tree);
         self.check_volume(&mesh)?;
         Ok(mesh)
@@ -156,7 +156,8 @@ impl Body {
             1e3 * self.wall_m,
             1e3 * self.side
         );
-        ShapeError::new("", what, format!("at most {MOST_DEGREES_OF_FREEDOM}: give it thicker walls"))
+        let right = format!("at most {MOST_DEGREES_OF_FREEDOM}: give it thicker walls");
+        self.of_pieces(ShapeError::new("", what, right))
     }
 
     fn check_volume(&self, mesh: &VolumeMesh) -> Result<(), ShapeError> {
@@ -167,7 +168,27 @@ impl Body {
             return Ok(());
         }
         let what = format!("the mesh made of it has {:.0} % of its volume", 100.0 * ratio);
-        Err(ShapeError::new("", what, "its walls must be thicker or its surface cleaner"))
+        let right = "its walls must be thicker or its surface cleaner";
+        Err(self.of_pieces(ShapeError::new("", what, right)))
+    }
+
+    /// An error of the tetrahedra made of the surface, with the walls that they had to fill.
+    fn of_walls(&self, error: ShapeError) -> ShapeError {
+        let (wall, side) = (1e3 * self.wall_m, 1e3 * self.side);
+        let what =
+            format!("its walls ({wall:.3} mm on a body of {side:.0} mm) cannot be filled: {}", error.what);
+        self.of_pieces(ShapeError::new("", what, "its walls must be thicker or its surface cleaner"))
+    }
+
+    /// An error that says how many separate pieces the surface has: an assembly, or a shell of
+    /// parts that cancel, has thin walls where none of its parts has.
+    fn of_pieces(&self, error: ShapeError) -> ShapeError {
+        let pieces = self.mesh.pieces_count();
+        if pieces < 2 {
+            return error;
+        }
+        let what = format!("{}; it has {pieces} separate pieces", error.what);
+        ShapeError { what, right: format!("{}, or name one part with --part", error.right), ..error }
     }
 
     /// Volume of what the surface winds around, m³, and its relative standard error.

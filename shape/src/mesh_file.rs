@@ -45,6 +45,9 @@ fn parse_named(path: &Path, bytes: &[u8]) -> Result<(Mesh, Names), ShapeError> {
     let surface = |(surface, names)| (Mesh::Surface(surface), names);
     let mesh = match ending.as_str() {
         _ if bytes.is_empty() => Err(ShapeError::new("", "is empty", "give a mesh")),
+        _ if placeholder(bytes).is_some() => {
+            Err(ShapeError::new("", placeholder(bytes).unwrap_or_default(), "download the mesh itself"))
+        }
         "msh" => msh::parse(bytes).map(|mesh| (mesh, Names::default())),
         "obj" => obj::parse(bytes).map(surface),
         "stl" => stl::parse(bytes).map(surface),
@@ -56,6 +59,15 @@ fn parse_named(path: &Path, bytes: &[u8]) -> Result<(Mesh, Names), ShapeError> {
         }
     };
     mesh.map(|(mesh, names)| (mesh.used(), names)).map_err(|error| error.within(&path.display().to_string()))
+}
+
+/// What a download left in the mesh's place.
+fn placeholder(bytes: &[u8]) -> Option<&'static str> {
+    let begins = String::from_utf8_lossy(&bytes[..bytes.len().min(64)]).trim_start().to_lowercase();
+    if begins.starts_with("version https://git-lfs") {
+        return Some("is a pointer of Git LFS");
+    }
+    (begins.starts_with("<!doctype html") || begins.starts_with("<html")).then_some("is a web page")
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ShapeError> {

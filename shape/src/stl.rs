@@ -29,11 +29,19 @@ pub fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
         !begins.contains('\0') && ["solid", "facet", "vertex"].iter().any(|word| begins.contains(word));
     match count {
         _ if ascii => text(&text_of(bytes)),
+        // A text's letters would be counts of thousands of millions.
+        _ if is_text(&bytes[..bytes.len().min(TELLING)]) => {
+            Err(ShapeError::new("", "is a text without `facet`", "must be a binary or ASCII STL"))
+        }
         // Some programs leave the number of triangles at 0.
         Some(0) => binary(bytes, (bytes.len() - HEADER) / RECORD).map(|mesh| (mesh, Names::default())),
         Some(count) => binary(bytes, count).map(|mesh| (mesh, Names::default())),
         None => Err(ShapeError::new("", "is cut short or no STL", "must be a binary or ASCII STL")),
     }
+}
+
+fn is_text(bytes: &[u8]) -> bool {
+    bytes.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
 }
 
 fn binary(bytes: &[u8], count: usize) -> Result<SurfaceMesh, ShapeError> {

@@ -94,10 +94,13 @@ fn what_is_no_body_is_refused_with_the_reason() {
     large.points.iter_mut().flatten().for_each(|x| *x *= 1e7);
     let paper = common::box_surface([0.2, 0.15, 5e-5]);
     let flat = flipped(common::box_surface([0.2, 0.15, 0.0]), |_| false);
+    // An engine of 66 parts was refused for its walls alone.
+    let sheets = joined(paper.clone(), &paper, [0.0, 0.0, 0.05]);
     for (mesh, reason) in [
         (nan, "not a number"),
         (large, "metres"),
         (paper, "too thin"),
+        (sheets, "2 separate pieces"),
         (flat, "--thickness"),
         (SurfaceMesh::default(), "no triangle"),
         (joined(clean(), &clean(), [0.5, 0.0, 0.0]), "2 separate parts"),

@@ -239,6 +239,47 @@ fn a_gltf_of_strips_is_read() {
     is_the_box("a.gltf", file.as_bytes());
 }
 
+/// Refused with "is VEC3; must be plain numbers of type VEC3".
+#[test]
+fn a_gltf_with_sparse_points_is_read_and_its_faults_are_named() {
+    let indices: Vec<u8> = FACES
+        .iter()
+        .flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d])
+        .flat_map(|i| (i as u16).to_le_bytes())
+        .collect();
+    let primitive = "{\"attributes\":{\"POSITION\":0},\"indices\":1}";
+    let file = |base: &str, written: &[(u8, usize)]| {
+        // Rows that are wrong, which rows are written, and with what.
+        let mut buffer = bytes_of(&[[9.0; 3]; 8]);
+        buffer.extend(&indices);
+        let rows_at = buffer.len();
+        buffer.extend(written.iter().map(|(row, _)| *row));
+        buffer.resize(buffer.len().next_multiple_of(4), 0);
+        let values_at = buffer.len();
+        buffer.extend(bytes_of(&written.iter().map(|(_, point)| POINTS[*point]).collect::<Vec<_>>()));
+        let views =
+            [[0, 96], [96, indices.len()], [rows_at, written.len()], [values_at, buffer.len() - values_at]];
+        let count = written.len();
+        let accessors = format!(
+            "{{{base}\"componentType\":5126,\"count\":8,\"type\":\"VEC3\",\"sparse\":{{\"count\":{count},\
+             \"indices\":{{\"bufferView\":2,\"componentType\":5121}},\"values\":{{\"bufferView\":3}}}}}},\
+             {{\"bufferView\":1,\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"}}"
+        );
+        gltf(&buffer, "octet-stream", &views, &accessors, primitive)
+    };
+    let all: Vec<(u8, usize)> = (0..8).map(|i| (i as u8, i)).collect();
+    is_the_box("a.gltf", file("\"bufferView\":0,", &all).as_bytes());
+    // Without a buffer every row is zeros, as the box's first corner is.
+    let zero = POINTS.iter().position(|p| *p == [0.0; 3]).unwrap();
+    let others: Vec<(u8, usize)> = all.iter().copied().filter(|(_, i)| *i != zero).collect();
+    is_the_box("a.gltf", file("", &others).as_bytes());
+    let astray = [&all[..7], &[(8, 7)]].concat();
+    let error = read("a.gltf", file("\"bufferView\":0,", &astray).as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("sparse") && error.contains("row 8"), "{error}");
+    let vast = file("", &others).replacen("\"count\":8", "\"count\":99999999999", 1);
+    assert!(read("a.gltf", vast.as_bytes()).unwrap_err().to_string().contains("99999999999"));
+}
+
 #[test]
 fn a_gltf_whose_triangles_are_packed_by_an_extension_names_it() {
     let file = gltf(&[0; 12], "octet-stream", &[[0, 12]], "{\"componentType\":5126,\"count\":8,\"type\":\"VEC3\"}",
@@ -246,6 +287,21 @@ fn a_gltf_whose_triangles_are_packed_by_an_extension_names_it() {
         .replace("\"scene\":0", "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0");
     let error = read("a.gltf", file.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("Draco"), "{error}");
+}
+
+/// Refused for "845429046 triangles", "no face", "no whole PLY".
+#[test]
+fn what_a_download_left_in_place_of_a_mesh_is_named() {
+    let pointer =
+        format!("version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 9\n", "4d".repeat(32));
+    let page = format!("\n<!DOCTYPE html>\n<html><body>{}</body></html>", "Not found. ".repeat(9));
+    for ending in ["obj", "stl", "ply", "glb", "gltf", "msh"] {
+        let error = |text: &str| read(&format!("a.{ending}"), text.as_bytes()).unwrap_err().to_string();
+        assert!(error(&pointer).contains("Git LFS"), "{}", error(&pointer));
+        assert!(error(&page).contains("web page"), "{}", error(&page));
+    }
+    let error = read("a.stl", "no triangles here. ".repeat(9).as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("a text without `facet`"), "{error}");
 }
 
 /// Refused for "walls of 1.4 mm": a cube one corner of which one triangle misses by 4 %.

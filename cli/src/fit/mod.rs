@@ -41,7 +41,7 @@ const STEPS: u64 = 200;
 #[derive(Debug, Args)]
 pub struct Options {
     /// Recording of a strike: WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A, 1 kHz – 1 MHz; or a modal
-    /// table (.csv, .json), or a modes file
+    /// table (.csv, .tsv, .txt, .json), or a modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
     /// With --family: further takes, hits of the same object

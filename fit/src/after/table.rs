@@ -122,7 +122,8 @@ pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableEr
     let decay = find(DECAY);
     let t60 = find(T60);
     if decay.is_none() && t60.is_none() {
-        return Err(TableError::NoColumn { what: "decay", names: "decay_per_s, t60_s, t60, rt" });
+        let names = "decay_per_s, t60_s, t60, rt, damping_ratio, q, loss_factor";
+        return Err(TableError::NoColumn { what: "decay", names });
     }
     let (amplitude, level, phase) = (find(AMPLITUDE), find(LEVEL), find(PHASE));
     if amplitude.is_none() && level.is_none() {
@@ -138,6 +139,7 @@ pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableEr
                 if value.is_finite() && ok(value) {
                     Ok(value)
                 } else {
+                    let value = if value.is_nan() { "that is missing".to_owned() } else { value.to_string() };
                     Err(TableError::BadCell { row: i + 1, what: format!("{what} {value}"), right })
                 }
             };
@@ -193,6 +195,12 @@ mod tests {
     fn other_programs_columns_are_understood() {
         let modes = from_csv("op, cf, rt\n-20, 440, 2.0\n").unwrap();
         assert!((modes[0].amplitude - 0.1).abs() < 1e-12 && (modes[0].t60_s() - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_row_without_a_decay_says_so() {
+        let error = from_csv("frequency_hz,decay_per_s,gain\n440,2,1\n880,,1\n").unwrap_err().to_string();
+        assert!(error.contains("row 2") && error.contains("decay that is missing"), "{error}");
     }
 
     #[test]

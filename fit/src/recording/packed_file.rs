@@ -205,6 +205,8 @@ impl PackedFile {
 fn refusal(error: Error, kind: &str) -> Refusal {
     match error {
         Error::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => Refusal::Io(error),
+        // A packing of AIFF-C (GSM, IMA, DWVW) or of another file that has no decoder here.
+        Error::Unsupported(what) => Refusal::Not(format!("{kind} packed in a way that is not read: {what}")),
         error => Refusal::Not(format!("{kind} with a fault: {error}")),
     }
 }

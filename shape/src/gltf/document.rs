@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// Largest file that is read, bytes.
 const LARGEST: u64 = 1 << 30;
+/// Most rows of an accessor that has no buffer: zeros but for its sparse rows.
+const MOST_SPARSE: u64 = 3 * crate::surface_mesh::MOST_TRIANGLES as u64;
 
 /// A document with its buffers.
 pub struct Document {
@@ -128,7 +130,7 @@ impl Document {
         buffer.get(offset..end).ok_or_else(wrong)
     }
 
-    /// The numbers of an accessor of the type that is wanted.
+    /// The numbers of an accessor of the type that is wanted, sparse ones filled in.
     ///
     /// # Errors
     /// When there is none of that type, or it lies outside its buffer.
@@ -137,45 +139,87 @@ impl Document {
         let accessor = index.as_u64().and_then(|i| self.json["accessors"].get(i as usize));
         let accessor =
             accessor.ok_or_else(|| wrong(format!("{index} is no accessor"), "must be the index of one"))?;
-        if accessor["type"].as_str() != Some(kind) || !accessor["sparse"].is_null() {
-            let right = format!("must be plain numbers of type {kind}");
-            return Err(wrong(format!("is {}", accessor["type"]), &right));
+        if accessor["type"].as_str() != Some(kind) {
+            return Err(wrong(
+                format!("is {}", accessor["type"]),
+                &format!("must be numbers of type {kind}"),
+            ));
         }
         let width = match kind {
             "VEC2" => 2,
             "VEC3" => 3,
             _ => 1,
         };
+        let count = accessor["count"].as_u64().unwrap_or(0);
         let component = accessor["componentType"].as_u64().unwrap_or(0);
+        let normalised = accessor["normalized"].as_bool() == Some(true);
+        let sparse = &accessor["sparse"];
+        let mut values = if accessor["bufferView"].is_null() && !sparse.is_null() {
+            if count > MOST_SPARSE {
+                return Err(wrong(format!("counts {count}"), &format!("must be at most {MOST_SPARSE}")));
+            }
+            vec![0.0; count as usize * width]
+        } else {
+            self.numbers(accessor, count, width, component, normalised, at)?
+        };
+        if !sparse.is_null() {
+            let at = format!("{at}, sparse");
+            let (indices, few) = (&sparse["indices"], sparse["count"].as_u64().unwrap_or(0));
+            let kind = indices["componentType"].as_u64().unwrap_or(0);
+            let rows = self.numbers(indices, few, 1, kind, false, &format!("{at} indices"))?;
+            let written =
+                self.numbers(&sparse["values"], few, width, component, normalised, &format!("{at} values"))?;
+            for (row, new) in rows.iter().zip(written.chunks_exact(width)) {
+                let first = *row as usize * width;
+                let Some(old) = values.get_mut(first..first + width) else {
+                    return Err(self.wrong(
+                        &at,
+                        format!("names row {row}"),
+                        &format!("must be below {count}"),
+                    ));
+                };
+                old.copy_from_slice(new);
+            }
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(wrong("holds a number that is not finite".to_owned(), "must be finite"));
+        }
+        Ok(Rows { values })
+    }
+
+    /// `count` rows of `width` numbers where an object with a `bufferView` says.
+    fn numbers(
+        &self,
+        of: &Value,
+        count: u64,
+        width: usize,
+        component: u64,
+        normalised: bool,
+        at: &str,
+    ) -> Result<Vec<f64>, ShapeError> {
         let size = match component {
             5120 | 5121 => 1,
             5122 | 5123 => 2,
             5125 | 5126 => 4,
-            _ => return Err(wrong("has another component type".to_owned(), "must be one of glTF 2.0")),
+            _ => return Err(self.wrong(at, "has another component type", "must be one of glTF 2.0")),
         };
-        let normalised = accessor["normalized"].as_bool() == Some(true);
-        let bytes = self.view(&accessor["bufferView"], at)?;
-        let offset = accessor["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let stride =
-            self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap_or(0) as usize]["byteStride"]
-                .as_u64()
-                .map_or(width * size, |stride| stride as usize);
-        let count = accessor["count"].as_u64().unwrap_or(0) as usize;
+        let bytes = self.view(&of["bufferView"], at)?;
+        let offset = of["byteOffset"].as_u64().unwrap_or(0) as usize;
+        let stride = self.json["bufferViews"][of["bufferView"].as_u64().unwrap_or(0) as usize]["byteStride"]
+            .as_u64()
+            .map_or(width * size, |stride| stride as usize);
+        let count = count as usize;
         let needed = count
             .checked_sub(1)
             .and_then(|n| n.checked_mul(stride))
             .map(|n| n.saturating_add(width * size).saturating_add(offset));
         if needed.is_none_or(|needed| needed > bytes.len()) {
-            return Err(wrong(format!("counts {count}"), "must be at least 1 and lie inside its bufferView"));
+            let right = "must be at least 1 and lie inside its bufferView";
+            return Err(self.wrong(at, format!("counts {count}"), right));
         }
-        let values: Vec<f64> = (0..count)
-            .flat_map(|row| (0..width).map(move |column| offset + row * stride + column * size))
-            .map(|at| number(&bytes[at..at + size], component, normalised))
-            .collect();
-        if values.iter().any(|x| !x.is_finite()) {
-            return Err(wrong("holds a number that is not finite".to_owned(), "must be finite"));
-        }
-        Ok(Rows { values })
+        let places =
+            (0..count).flat_map(|row| (0..width).map(move |column| offset + row * stride + column * size));
+        Ok(places.map(|at| number(&bytes[at..at + size], component, normalised)).collect())
     }
 
     /// The bytes of the picture of a texture.
