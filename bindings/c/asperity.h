@@ -570,7 +570,7 @@ typedef struct asp_stats {
     uint64_t shortened_collisions;
     /// Onsets of contact found by the micro-contact model.
     uint64_t micro_collisions;
-    /// Blows of a probe that had left the ground.
+    /// Blows of a probe that had left the ground, and flights from a crest that its leash ended.
     uint64_t blows;
     /// Events handed back because the queue was full.
     uint64_t dropped;

@@ -29,7 +29,7 @@ pub struct asp_stats {
     pub shortened_collisions: u64,
     /// Onsets of contact found by the micro-contact model.
     pub micro_collisions: u64,
-    /// Blows of a probe that had left the ground.
+    /// Blows of a probe that had left the ground, and flights from a crest that its leash ended.
     pub blows: u64,
     /// Events handed back because the queue was full.
     pub dropped: u64,
