@@ -1,6 +1,7 @@
 //! From a scene file to a running engine.
 
 mod change;
+mod doubts;
 pub mod levels;
 mod parts;
 
@@ -139,6 +140,9 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
     let mut engine = assemble(file, overrides, maps, &levels, |config| config)?;
     engine.levels = levels;
     engine.remarks.extend(maps.remarks());
+    // A level by policy is meant.
+    let written = file.actuators.iter().map(|actuator| actuator.full_scale.unwrap_or_default());
+    engine.remarks.extend(doubts::doubts(&engine.scene.config().actuators, written));
     Ok(engine)
 }
 

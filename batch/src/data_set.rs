@@ -1,6 +1,7 @@
 //! Data set: its shards made, kept and listed.
 
 use crate::build::Build;
+use crate::check::check;
 use crate::draw::Draws;
 use crate::manifest::{self, Manifest};
 use crate::record::{Record, Samples};
@@ -24,6 +25,7 @@ pub struct DataSet {
     levels: DataLevels,
     build: Build,
     maps: Maps,
+    doubts: Vec<String>,
     fresh: Fresh,
 }
 
@@ -81,10 +83,11 @@ impl DataSet {
             same_build(&folder.join(manifest::NAME), &build, &there.build)?;
         }
         let choices = choices(&spec, folder).map_err(|error| error.within(spec.path.display()))?;
+        let doubts = check(&spec, &choices, folder)?;
         let maps = Maps::default();
         let levels = data_levels(&spec, &choices, folder, &maps)?;
         whole_file::write_once(&folder.join("spec.toml"), spec.text.as_bytes())?;
-        Ok(Self { spec, folder: folder.to_owned(), choices, levels, build, maps, fresh })
+        Ok(Self { spec, folder: folder.to_owned(), choices, levels, build, maps, doubts, fresh })
     }
 
     /// Parts of the data set that have a share and no stroke, and why.
@@ -117,10 +120,10 @@ impl DataSet {
         &self.spec
     }
 
-    /// Doubts about the pictures that were read so far ([`Maps::remarks`]).
+    /// Doubts about units, and about the pictures that were read so far ([`Maps::remarks`]).
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
-        self.maps.remarks()
+        [self.doubts.clone(), self.maps.remarks()].concat()
     }
 
     /// The file of a shard.

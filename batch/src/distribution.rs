@@ -46,6 +46,61 @@ pub fn drawn_table(table: &Table, field: &str, draws: Draws) -> Result<Table, Fi
     table.iter().map(of).collect()
 }
 
+/// Every value that a field may be drawn as: both ends of ranges (of a normal one without `within`,
+/// so many deviations from the mean), each value of choices; one at a time, the others at their
+/// first.
+///
+/// # Errors
+/// As [`drawn`].
+pub fn ends(written: &Value, field: &str, deviations: f64) -> Result<Vec<Value>, FileError> {
+    let numbers = |numbers: [f64; 2]| Ok(numbers.map(Value::Float).to_vec());
+    match written {
+        Value::Table(table) => match Kind::of(table, field)? {
+            Some(Kind::Uniform(range) | Kind::LogUniform(range)) => numbers(range),
+            Some(Kind::Normal { mean, deviation, within: [low, high] }) => {
+                numbers([low.max(mean - deviations * deviation), high.min(mean + deviations * deviation)])
+            }
+            Some(Kind::Choice(values)) => {
+                let each = values.iter().zip(1..);
+                let each = each.map(|(value, i)| ends(value, &format!("{field}.choice {i}"), deviations));
+                Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
+            }
+            None => Ok(ends_of_table(table, field, deviations)?.into_iter().map(Value::Table).collect()),
+        },
+        Value::Array(values) => {
+            let each = values.iter().map(|value| ends(value, field, deviations));
+            let each = each.collect::<Result<Vec<_>, _>>()?;
+            Ok(one_at_a_time(&each).into_iter().map(Value::Array).collect())
+        }
+        plain => Ok(vec![plain.clone()]),
+    }
+}
+
+/// [`ends`] of every key of a table.
+///
+/// # Errors
+/// As [`drawn`].
+pub fn ends_of_table(table: &Table, field: &str, deviations: f64) -> Result<Vec<Table>, FileError> {
+    let of = |(key, value): (&String, &Value)| ends(value, &format!("{field}.{key}"), deviations);
+    let each = table.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let with = |values: Vec<Value>| table.keys().cloned().zip(values).collect();
+    Ok(one_at_a_time(&each).into_iter().map(with).collect())
+}
+
+/// Lists in which one entry at a time is another than its first.
+fn one_at_a_time(each: &[Vec<Value>]) -> Vec<Vec<Value>> {
+    let first: Vec<Value> = each.iter().filter_map(|values| values.first().cloned()).collect();
+    let mut all = vec![first.clone()];
+    for (place, values) in each.iter().enumerate() {
+        for value in values.iter().skip(1) {
+            let mut other = first.clone();
+            other[place] = value.clone();
+            all.push(other);
+        }
+    }
+    all
+}
+
 enum Kind<'a> {
     Uniform([f64; 2]),
     LogUniform([f64; 2]),

@@ -20,6 +20,7 @@
 //! ```
 
 mod build;
+mod check;
 pub mod codec;
 mod data_set;
 pub mod distribution;

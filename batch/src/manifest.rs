@@ -51,8 +51,9 @@ pub struct Manifest {
     /// The force and the path, where they are kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<ForceUnits>,
-    /// The part that each surface belongs to, where parts are made by surface.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    /// The part that each surface belongs to; empty where parts are made by stroke and each record
+    /// says its own.
+    #[serde(default)]
     pub splits: BTreeMap<String, String>,
     /// The shards that are there, in order.
     pub shards: Vec<Shard>,
@@ -63,6 +64,9 @@ pub struct Manifest {
 pub struct Levels {
     /// Metres or m/s² at sample value 1 of `haptic`.
     pub haptic_full_scale: f64,
+    /// n of a finger's displacement ∝ Fⁿ.
+    #[serde(default)]
+    pub haptic_felt_force_exponent: f64,
     /// Gain of `audio`.
     pub audio_gain: f64,
 }
@@ -78,6 +82,9 @@ pub struct FurtherHaptic {
     pub unit: String,
     /// Meaning of sample value 1.
     pub full_scale: f64,
+    /// n of a finger's displacement ∝ Fⁿ.
+    #[serde(default)]
+    pub felt_force_exponent: f64,
     /// Samples a second, Hz.
     pub rate_hz: f64,
 }
@@ -138,7 +145,11 @@ impl Manifest {
             seed: spec.says.seed,
             strokes: spec.says.strokes,
             per_shard: spec.says.per_shard,
-            levels: Levels { haptic_full_scale: levels.full_scale[0], audio_gain: levels.gain },
+            levels: Levels {
+                haptic_full_scale: levels.full_scale[0],
+                haptic_felt_force_exponent: haptic.exponent(),
+                audio_gain: levels.gain,
+            },
             units: Units {
                 haptic: unit_of(&haptic.output),
                 haptic_output: haptic.output.clone(),
@@ -153,6 +164,7 @@ impl Manifest {
                     output: haptic.output.clone(),
                     unit: unit_of(&haptic.output),
                     full_scale: *full_scale,
+                    felt_force_exponent: haptic.exponent(),
                     rate_hz: haptic.rate_hz,
                 })
                 .collect(),

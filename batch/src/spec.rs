@@ -16,7 +16,7 @@
 
 use crate::codec::Codec;
 use asperity::files::{FileError, nearest};
-use asperity::{Isa, Material};
+use asperity::{FELT_FORCE_EXPONENT, Isa};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -140,6 +140,8 @@ pub struct Haptic {
     pub output: String,
     /// Meaning of sample value 1; missing: by the level policy of the first surface, for all.
     pub full_scale: Option<f64>,
+    /// n of a finger's displacement ∝ Fⁿ, 0 to 1; missing: as in a scene file.
+    pub felt_force_exponent: Option<f64>,
 }
 
 impl Haptic {
@@ -147,6 +149,13 @@ impl Haptic {
     #[must_use]
     pub fn further_column(&self) -> String {
         format!("haptic_{}", self.output)
+    }
+
+    /// n of a finger's displacement ∝ Fⁿ, as the level policy has it.
+    #[must_use]
+    pub fn exponent(&self) -> f64 {
+        let by_policy = self.full_scale.is_none() && self.output == "displacement";
+        self.felt_force_exponent.unwrap_or(if by_policy { FELT_FORCE_EXPONENT } else { 0.0 })
     }
 }
 
@@ -277,7 +286,12 @@ impl Default for Output {
 
 impl Default for Haptic {
     fn default() -> Self {
-        Self { rate_hz: 8000.0, output: "displacement".to_owned(), full_scale: None }
+        Self {
+            rate_hz: 8000.0,
+            output: "displacement".to_owned(),
+            full_scale: None,
+            felt_force_exponent: None,
+        }
     }
 }
 
@@ -340,21 +354,14 @@ impl Spec {
         Isa::from_name(&self.says.kernel).unwrap_or(Isa::Portable)
     }
 
-    /// Words that are drawn or looked up only when a stroke is rendered: distributions and
-    /// materials.
+    /// Misspelt distributions.
     fn check_words(&self) -> Result<(), FileError> {
         let says = &self.says;
         let Finger { speed_m_s, force_n, path, duration_s, reports_hz } = &says.finger;
         let finger = [speed_m_s, force_n, path, duration_s, reports_hz];
         let tables = [&says.body, &says.probe, &says.surface.over].into_iter().flat_map(Table::values);
         let values = tables.chain(finger).chain(&says.surface.choice);
-        values.map(check_distribution).collect::<Result<Vec<_>, _>>()?;
-        match says.body.get("material") {
-            Some(Value::String(name)) if Material::by_name(name).is_none() => {
-                Err(unknown("body.material", name, &Material::names()))
-            }
-            _ => Ok(()),
-        }
+        values.into_iter().try_for_each(check_distribution)
     }
 
     /// Checks what is felt and the force.
@@ -368,6 +375,7 @@ impl Spec {
             let fastest = [100.0, output.audio.rate_hz];
             let right = "must be 100 Hz to the rate of the audio";
             number("output.haptic.rate_hz", haptic.rate_hz, fastest, right)?;
+            number("output.haptic.felt_force_exponent", haptic.exponent(), [0.0, 1.0], "must be 0 to 1")?;
             if !known.contains(&haptic.output.as_str()) {
                 return Err(unknown("output.haptic.output", &haptic.output, &known.join(", ")));
             }
@@ -438,7 +446,7 @@ fn check_distribution(value: &Value) -> Result<(), FileError> {
 }
 
 /// A word that is none of those that would be right.
-fn unknown(at: &str, word: &str, known: &str) -> FileError {
+pub(crate) fn unknown(at: &str, word: &str, known: &str) -> FileError {
     let meant = nearest(word, &known.split(", ").collect::<Vec<_>>());
     let meant = meant.map_or_else(String::new, |meant| format!("write \"{meant}\"; "));
     FileError::new(at, format!("\"{word}\" is unknown"), format!("{meant}must be one of {known}"))

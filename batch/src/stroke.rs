@@ -4,7 +4,7 @@ use crate::distribution::{drawn, drawn_table};
 use crate::draw::Draws;
 use crate::force::{ForceTable, ForceWatch};
 use crate::path::{Motion, Shape};
-use crate::spec::{Output, Spec};
+use crate::spec::{Finger, Output, Spec};
 use crate::surfaces::{Choice, split};
 use asperity::files::FileError;
 use asperity::files::contact_log::ContactLog;
@@ -68,7 +68,11 @@ impl Stroke {
         let choice = &choices[place];
         let id = format!("{number:012}");
         let motion = motion(spec, draws).map_err(at)?;
-        let table = scene_of(spec, choice, levels, &id, draws).map_err(at)?;
+        let mut drawn = [(); 4].map(|()| Table::new());
+        for (table, (written, field)) in drawn.iter_mut().zip(sections(spec, choice)) {
+            *table = drawn_table(written, field, draws).map_err(at)?;
+        }
+        let table = scene_of(spec, drawn, levels, &id, draws.bits("scene.seed", 0)[0]);
         let scene = toml::to_string(&table).map_err(|error| at(FileError::told(error)))?;
         let file = SceneFile::parse(&scene, &folder.join(format!("{id}.toml"))).map_err(at)?;
         let touched = &file.surfaces[0];
@@ -150,6 +154,7 @@ fn render(
         if let Some(actuator) = file.actuators.first_mut() {
             actuator.settings.output = quantity(&haptic.output);
             actuator.full_scale = Some(*full_scale);
+            actuator.felt_force_exponent = Some(haptic.exponent());
         }
         let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides)?;
         let mut render = offline::render(scene, renderer, log, &names, &options).map_err(at)?;
@@ -200,59 +205,80 @@ pub fn data_levels(
     Ok(levels)
 }
 
-fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
-    let finger = &spec.says.finger;
-    let number = |name: &str, value: &Value, [low, high]: [f64; 2]| {
-        let field = format!("finger.{name}");
-        let value = drawn(value, &field, draws)?;
-        let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
-        match number {
-            Some(number) if (low..=high).contains(&number) => Ok(number),
-            Some(number) => {
-                Err(FileError::new(field, format!("{number} is refused"), format!("must be {low} to {high}")))
-            }
-            None => Err(FileError::new(field, "is no number", "write a number or a distribution of numbers")),
-        }
-    };
-    let shape = drawn(&finger.path, "finger.path", draws)?;
-    let shape = shape
-        .as_str()
-        .ok_or_else(|| FileError::new("finger.path", "is no text", "must be line, arc or back-and-forth"))?;
-    Ok(Motion {
-        shape: Shape::from_name(shape)?,
-        speed_m_s: number("speed_m_s", &finger.speed_m_s, [0.0, 10.0])?,
-        force_n: number("force_n", &finger.force_n, [0.0, 1e4])?,
-        duration_s: number("duration_s", &finger.duration_s, [0.001, MOST_S])?,
-        reports_hz: number("reports_hz", &finger.reports_hz, [1.0, 5000.0])?,
-    })
+/// The numbers of a finger, each with its range and what would be right.
+pub(crate) fn finger_numbers(finger: &Finger) -> [(&'static str, &Value, [f64; 2], &'static str); 4] {
+    let reports = "must be 5 to 5000; a contact without a report for 0.25 s is let go";
+    [
+        ("speed_m_s", &finger.speed_m_s, [0.0, 10.0], "must be 0 to 10"),
+        ("force_n", &finger.force_n, [0.0, 1e4], "must be above 0, up to 10000; a normal draw needs within"),
+        ("duration_s", &finger.duration_s, [0.001, MOST_S], "must be 0.001 to 600"),
+        ("reports_hz", &finger.reports_hz, [5.0, 5000.0], reports),
+    ]
 }
 
-/// The choice's scene, with what the specification says over it, drawn for one stroke.
-fn scene_of(
+/// A drawn number within its range.
+pub(crate) fn in_range(
+    field: &str,
+    value: &Value,
+    [low, high]: [f64; 2],
+    right: &str,
+) -> Result<f64, FileError> {
+    match value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)) {
+        Some(number) if (low..=high).contains(&number) => Ok(number),
+        Some(number) => Err(FileError::new(field, format!("{number} is refused"), right)),
+        None => Err(FileError::new(field, "is no number", "write a number or a distribution of numbers")),
+    }
+}
+
+fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
+    let finger = &spec.says.finger;
+    let mut numbers = [0.0; 4];
+    for (number, (name, value, range, right)) in numbers.iter_mut().zip(finger_numbers(finger)) {
+        let field = format!("finger.{name}");
+        *number = in_range(&field, &drawn(value, &field, draws)?, range, right)?;
+    }
+    let [speed_m_s, force_n, duration_s, reports_hz] = numbers;
+    let shape = Shape::from_name(drawn(&finger.path, "finger.path", draws)?.as_str().unwrap_or_default())?;
+    Ok(Motion { shape, speed_m_s, force_n, duration_s, reports_hz })
+}
+
+/// Tables that a stroke's scene is drawn from, with the field of each: the choice, and what the
+/// specification says over it.
+pub(crate) fn sections<'a>(spec: &'a Spec, choice: &'a Choice) -> [(&'a Table, &'a str); 4] {
+    let says = &spec.says;
+    [
+        (&choice.scene, &*choice.name),
+        (&says.surface.over, "surface"),
+        (&says.body, "body"),
+        (&says.probe, "probe"),
+    ]
+}
+
+/// The choice's scene, with what the specification says over it, all drawn ([`sections`]).
+pub(crate) fn scene_of(
     spec: &Spec,
-    choice: &Choice,
+    [mut scene, surface, of_body, probe]: [Table; 4],
     levels: Option<&DataLevels>,
     id: &str,
-    draws: Draws,
-) -> Result<Table, FileError> {
-    let mut scene = drawn_table(&choice.scene, &choice.name, draws)?;
+    seed: u64,
+) -> Table {
     let touched = first(&mut scene, "surface");
-    touched.extend(drawn_table(&spec.says.surface.over, "surface", draws)?);
-    if !spec.says.body.is_empty() {
+    touched.extend(surface);
+    if !of_body.is_empty() {
         let name = touched.get("body").cloned().unwrap_or_else(|| Value::String("body".into()));
         touched.insert("body".into(), name.clone());
         let body = first(&mut scene, "body");
-        body.extend(drawn_table(&spec.says.body, "body", draws)?);
+        body.extend(of_body);
         body.insert("name".into(), name);
     }
-    if !spec.says.probe.is_empty() {
-        scene.insert("probe".into(), Value::Table(drawn_table(&spec.says.probe, "probe", draws)?));
+    if !probe.is_empty() {
+        scene.insert("probe".into(), Value::Table(probe));
     }
     // 63 bits are what TOML's whole numbers hold.
-    scene.insert("seed".into(), Value::Integer((draws.bits("scene.seed", 0)[0] >> 1) as i64));
+    scene.insert("seed".into(), Value::Integer((seed >> 1) as i64));
     scene.insert("contacts".into(), Value::String(format!("{id}.jsonl")));
     outputs(&mut scene, &spec.says.output, levels);
-    Ok(scene)
+    scene
 }
 
 /// One haptic channel, of the first quantity, and one bus, at the rate of the sound.
@@ -264,6 +290,7 @@ fn outputs(scene: &mut Table, output: &Output, levels: Option<&DataLevels>) {
     let mut audio = Table::new();
     if let Some(levels) = levels {
         actuator.insert("full_scale".into(), Value::Float(levels.full_scale[0]));
+        actuator.insert("felt_force_exponent".into(), Value::Float(output.haptic[0].exponent()));
         audio.insert("gain".into(), Value::Float(levels.gain));
     }
     scene.insert("actuator".into(), Value::Array(vec![Value::Table(actuator)]));

@@ -34,8 +34,8 @@ pub struct Choice {
 pub fn choices(spec: &Spec, folder: &Path) -> Result<Vec<Choice>, FileError> {
     let home = spec.path.parent().unwrap_or(Path::new(""));
     let mut all: Vec<Choice> = Vec::new();
-    for (place, value) in spec.says.surface.choice.iter().enumerate() {
-        let field = format!("surface.choice[{place}]");
+    for (value, place) in spec.says.surface.choice.iter().zip(1..) {
+        let field = format!("surface.choice {place}");
         match value {
             Value::String(pattern) => {
                 for path in matching(&home.join(pattern)).map_err(|error| error.within(&field))? {
@@ -57,7 +57,7 @@ fn distinct(mut all: Vec<Choice>) -> Result<Vec<Choice>, FileError> {
     for place in 1..all.len() {
         let (before, after) = all.split_at_mut(place);
         if before.iter().any(|choice| choice.name == after[0].name) {
-            after[0].name = format!("{}-{place}", after[0].name);
+            after[0].name = format!("{}-{}", after[0].name, place + 1);
         }
     }
     Ok(all)
@@ -103,9 +103,9 @@ fn from_scene(path: &Path, folder: &Path) -> Result<Choice, FileError> {
 
 fn from_table(table: &Table, home: &Path, folder: &Path, field: &str) -> Result<Choice, FileError> {
     let text = |key: &str| table.get(key).and_then(Value::as_str).map(str::to_owned);
-    let name = text("name").or_else(|| text("solid")).unwrap_or_else(|| {
-        field.replace(['[', ']'], "-").trim_end_matches('-').replace("surface.choice", "surface")
-    });
+    let name = text("name")
+        .or_else(|| text("solid"))
+        .unwrap_or_else(|| field.replace("surface.choice ", "surface-"));
     let mut surface = table.clone();
     surface.insert("name".into(), Value::String(name.clone()));
     for side in ["width_m", "height_m"] {
@@ -117,7 +117,9 @@ fn from_table(table: &Table, home: &Path, folder: &Path, field: &str) -> Result<
     // Distributions are no values yet; only the names of files are looked for.
     without_distributions(&mut known);
     let written = toml::to_string(&known).map_err(|error| FileError::told(error).within(field))?;
-    let file = SceneFile::parse(&written, &home.join("spec")).map_err(|error| error.within(field))?;
+    let path = home.join("spec");
+    let own = |error: FileError| error.out_of(path.display()).out_of(format!("surface 1 \"{name}\""));
+    let file = SceneFile::parse(&written, &path).map_err(|error| own(error).within(field))?;
     copy_files(&mut scene, &file, home, folder)?;
     Ok(Choice { name, scene })
 }

@@ -429,3 +429,106 @@ fn quantities_are_written_as_a_name_a_table_or_a_list() {
         assert!(error.contains(part) && !error.contains('\n'), "{haptic}: {error}");
     }
 }
+
+#[test]
+fn what_is_felt_grows_with_the_force_that_presses_and_metres_that_are_asked_for_do_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let rms = |force: &str, haptic: &str, name: &str| {
+        let text = SPEC
+            .replace("{ normal = [0.6, 0.2], within = [0.1, 2] }", force)
+            .replace("{ log_uniform = [0.02, 0.3] }", "0.1")
+            .replace("duration_s = 0.1", "duration_s = 0.4")
+            .replace("haptic = { rate_hz = 8000 }", haptic);
+        let there = set(&folder, &text, name).unwrap();
+        let record = there.record(0).unwrap();
+        let felt = &record.samples.haptic;
+        let power = felt.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / felt.len() as f64;
+        (power.sqrt(), record.stroke.scene.clone(), there.write_manifest().unwrap())
+    };
+    let (light, scene, manifest) = rms("0.25", "haptic = { rate_hz = 8000 }", "light");
+    let (firm, ..) = rms("2", "haptic = { rate_hz = 8000 }", "firm");
+    assert!(firm > 1.5 * light, "{light} at 0.25 N, {firm} at 2 N");
+    assert!(scene.contains("felt_force_exponent = 0.3333333333333333"), "{scene}");
+    assert_eq!(manifest.levels.haptic_felt_force_exponent, 1.0 / 3.0);
+    let metres = "haptic = { rate_hz = 8000, full_scale = 1e-4 }";
+    let (light, scene, _) = rms("0.25", metres, "light-m");
+    let (firm, ..) = rms("2", metres, "firm-m");
+    assert!(scene.contains("felt_force_exponent = 0.0") && firm < 1.5 * light, "{light} {firm}");
+}
+
+#[test]
+fn every_value_of_a_choice_and_a_range_is_tried_before_anything_is_rendered() {
+    for (from, to, part) in [
+        ("\"back-and-forth\"", "\"zigzag\"", "line 14: finger.path: \"zigzag\" is unknown"),
+        ("[\"ceramic\", \"wood\"]", "[\"wood\", \"stel\"]", "line 10: body 1 \"body\": material: \"stel\""),
+        ("[\"ceramic\", \"wood\"]", "[\"wood\", { choice = [\"stel\"] }]", "\"stel\" is unknown"),
+        ("roughness = { uniform = [0, 1] }", "roughness = { uniform = [0, 3] }", "roughness: 3"),
+        ("size_m = { uniform = [0.1, 0.3] }", "size_m = { uniform = [0.1, 300] }", "size_m: 300"),
+        ("stock = \"plate\"", "stock = { choice = [\"plate\", \"plat\"] }", "stock: \"plat\" is unknown"),
+        (
+            "[body]",
+            "[probe]\npreset = { choice = [\"stylus\", \"styluss\"] }\n[body]",
+            "\"styluss\" is unknown",
+        ),
+        (
+            "within = [0.1, 2]",
+            "within = [-1, 2]",
+            "finger.force_n: -0.029193205257869503 is refused; must be above 0",
+        ),
+        (", within = [0.1, 2]", "", "finger.force_n: -0.0"),
+        ("{ normal = [0.6, 0.2], within = [0.1, 2] }", "0", "finger.force_n: 0 touches nothing"),
+        ("{ normal = [0.6, 0.2], within = [0.1, 2] }", "{ choice = [0, 1] }", "0 touches nothing"),
+        ("duration_s = 0.1", "reports_hz = 2", "reports_hz: 2 is refused; must be 5 to 5000; a contact"),
+        (
+            "choice = [{ solid = \"granite\" }, ",
+            "displacement = { choice = [\"a.png\", \"b.png\"] }\nrelief_m = 1e-3\nchoice = [",
+            "spec.toml: a.png: is no file of the data set",
+        ),
+        ("{ solid = \"granite\" }", "{ solid = \"cheese\" }", "surface.choice 1: solid: \"cheese\""),
+        ("{ solid = \"granite\" }", "{ solid = { choice = [\"granite\", \"cheese\"] } }", "\"cheese\""),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let text = SPEC.replace(from, to);
+        assert_ne!(text, SPEC);
+        let error = set(&folder, &text, "set").err().unwrap_or_else(|| panic!("{to} was accepted"));
+        let error = error.to_string();
+        assert!(error.contains(part) && error.contains("spec.toml: "), "{to}: {error}");
+        assert!(!error.contains("check.toml") && !error.contains("stroke "), "{to}: {error}");
+        assert!(!folder.path().join("set").exists(), "{to} left a folder");
+    }
+}
+
+#[test]
+fn grams_and_centimetres_are_told_with_what_was_meant() {
+    let told = |from: &str, to: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let text = SPEC.replace(from, to);
+        set(&folder, &text, "set").unwrap().remarks()
+    };
+    assert_eq!(told("seed = 11", "seed = 12"), [""; 0]);
+    let force = "{ normal = [0.6, 0.2], within = [0.1, 2] }";
+    for (from, to, doubt) in [
+        (
+            force,
+            "{ uniform = [50, 200] }",
+            "finger.force_n is 50 to 200, beyond the usual 30; if these are grams, write 0.4905 to 1.962",
+        ),
+        (
+            "{ uniform = [0.1, 0.3] }",
+            "{ uniform = [10, 30] }",
+            "body.size_m is 10 to 30, beyond the usual 5; if these are centimetres, write 0.1 to 0.3",
+        ),
+        (
+            "{ log_uniform = [0.02, 0.3] }",
+            "{ choice = [5, 8] }",
+            "finger.speed_m_s is 5 to 8, beyond the usual 3; if these are mm/s, write 0.005 to 0.008",
+        ),
+        (
+            "{ solid = \"granite\" }",
+            "{ name = \"g\", solid = \"granite\", width_m = 80 }",
+            "g.surface.width_m is 80, beyond the usual 5; if these are millimetres, write 0.08",
+        ),
+    ] {
+        assert_eq!(told(from, to), [doubt]);
+    }
+}

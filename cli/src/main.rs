@@ -107,7 +107,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
 }
 
 fn main() -> ExitCode {
-    let given = Arguments::command().try_get_matches();
+    let given = with_negative_numbers(Arguments::command()).try_get_matches();
     let parsed = given.and_then(|given| Ok((Arguments::from_arg_matches(&given)?, given)));
     let (arguments, given) = match parsed {
         Ok(parsed) => parsed,
@@ -129,6 +129,18 @@ fn main() -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// Verbs whose options take numbers below 0 for numbers, so that their ranges answer.
+fn with_negative_numbers(verb: clap::Command) -> clap::Command {
+    let names: Vec<String> = verb.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
+    let takes = |option: clap::Arg| {
+        let is_value = option.get_action().takes_values() && !option.is_positional();
+        if is_value { option.allow_negative_numbers(true) } else { option }
+    };
+    names
+        .into_iter()
+        .fold(verb.mut_args(takes), |verb, name| verb.mut_subcommand(name, with_negative_numbers))
 }
 
 /// Help and version go to stdout; every other refusal of the command line is one line and status 2.

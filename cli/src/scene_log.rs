@@ -27,7 +27,11 @@ pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError>
     let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
     let (log, unread) =
         ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::told)?;
+    // A surface that an edit adds is not the file's.
+    let has_frame =
+        |name: &str| file.surfaces.iter().all(|entry| entry.name != name || entry.frame.is_some());
     let fits = log.check_actuators(file.actuators.len()).and_then(|()| log.check_names(&names_of(file)));
+    let fits = fits.and_then(|()| log.check_places(has_frame));
     fits.map_err(|error| error.in_text(&text, &path.display().to_string()))?;
     Ok((log, unread))
 }

@@ -60,6 +60,15 @@ pub struct Options {
     pub sounds: sounds::Options,
 }
 
+/// Slowest decay of all that rings of a body, 1/s: its modes, and its noise bands; infinite where
+/// there is nothing.
+pub fn slowest_per_s(model: &ModalModel) -> f64 {
+    let bands = model.diffuse.iter().flat_map(|diffuse| &diffuse.bands);
+    let modes = model.modes.iter().map(|mode| mode.decay_per_s);
+    let bands = bands.flat_map(|band| &band.parts).map(|part| part.decay_per_s);
+    modes.chain(bands).fold(f64::INFINITY, f64::min)
+}
+
 /// A material of the command line.
 fn material(name: &str) -> Result<Material, String> {
     Material::by_name(name).ok_or_else(|| format!("must be one of: {}", Material::names()))
@@ -207,20 +216,16 @@ impl Body {
             let right = format!("must be 0 to {}", count - 1);
             return Err(CliError::new("--position", format!("{what} has {count}"), right));
         }
-        if self.model.modes.is_empty() {
-            return Err(CliError::new(
-                what,
-                "has no mode that is heard",
-                "make it larger, or name another body",
-            ));
+        if slowest_per_s(&self.model).is_infinite() && self.model.residual.is_none() {
+            let rings = "rings outside 16 Hz to 20 kHz only, and has no noise bands";
+            return Err(CliError::new(what, rings, "name another --size, --material or body"));
         }
         Ok(())
     }
 
     fn sounds(&self, options: &Options) -> Vec<Sound> {
-        let slowest =
-            self.model.modes.iter().map(|mode| mode.decay_per_s).fold(f64::INFINITY, f64::min).max(1e-3);
-        let tail_s = (RUNG_OUT / slowest).clamp(LEAST_TAIL_S, MOST_TAIL_S);
+        let slowest_per_s = slowest_per_s(&self.model).max(1e-3);
+        let tail_s = (RUNG_OUT / slowest_per_s).clamp(LEAST_TAIL_S, MOST_TAIL_S);
         let mut scene = Table::new();
         scene.insert("body".into(), Value::Array(vec![Value::Table(self.table.clone())]));
         let mut sounds = Vec::new();

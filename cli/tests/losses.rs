@@ -61,7 +61,7 @@ fn a_contact_that_is_never_ended_is_told_to_have_faded() {
     let toml = TOML.replace("tail_s = 0.2", "tail_s = 0.6");
     assert_says(
         &said(&toml, &log),
-        &["1 contacts faded", "for 0.25 s, the first contact 3 after t = 0.", "\"end\""],
+        &["1 contact faded", "for 0.25 s, the first contact 3 after t = 0.", "\"end\""],
     );
 }
 
@@ -148,7 +148,7 @@ fn an_impact_that_lasts_longer_than_is_played_is_told() {
         .replace("\"mass_kg\":0.01", "\"mass_kg\":900.0")
         .replace("\"striker\":\"steel\"", "\"striker\":\"rubber\"");
     let slow = foam.replace("\"speed_m_s\":0.5", "\"speed_m_s\":0.001");
-    assert_says(&said(TOML, &slow), &["1 impacts or micro-collisions would outlast", "(0.17 s"]);
+    assert_says(&said(TOML, &slow), &["1 impact or micro-collision would outlast", "(0.17 s"]);
 }
 
 #[test]
@@ -201,4 +201,75 @@ fn a_log_that_contradicts_itself_is_told_with_both_speeds() {
         &said(TOML, &log),
         &["uv moves at 0.08", "where velocity_m_s says 80.000 m/s", "is velocity_m_s in mm/s?"],
     );
+}
+
+#[test]
+fn a_blow_told_after_the_rebound_is_told_to_have_no_speed() {
+    let still = impact(0.1).replace("\"speed_m_s\":0.5", "\"speed_m_s\":0.0");
+    assert!(still.contains("\"speed_m_s\":0.0"), "{still}");
+    let back = impact(0.2).replace("\"speed_m_s\":0.5", "\"speed_m_s\":-0.5");
+    let one = said(TOML, &(stroke(1, 0.5) + &still.replace("\"t\":0.1", "\"t\":0.55")));
+    assert_eq!(
+        one,
+        "1 impact was silent for its speed_m_s of 0 or below, the first at t = 0.55 s; write the speed of approach before the blow, not after it"
+    );
+    let both = said(TOML, &(still + &back));
+    assert_says(&both, &["2 impacts were silent for their speed_m_s of 0 or below, the first at t = 0.1 s"]);
+    assert!(!both.contains("1e4 N"), "{both}");
+}
+
+#[test]
+fn a_stock_body_that_no_ear_hears_is_told_so_and_a_huge_one_is_no_mass_that_nobody_wrote() {
+    let stock = |keys: &str| TOML.replace("modes = \"bar.modes.json\"\nmaterial = \"steel\"", keys);
+    let small = stock("stock = \"bar\"\nsize_m = 0.002\nmaterial = \"steel\"");
+    assert_ne!(small, TOML);
+    for toml in [
+        small,
+        stock(
+            "stock = \"bar\"\nsize_m = 0.2\nmaterial = { young_pa = 2e11, poisson = 0.3, density_kg_m3 = 1.9 }",
+        ),
+    ] {
+        let said = said(&toml, &impact(0.1));
+        assert_says(&said, &["body \"bar\" rings outside 16 Hz to 20 kHz only", "size_m or its material"]);
+    }
+    let huge = stock("stock = \"block\"\nsize_m = 20.0\nmaterial = \"steel\"");
+    assert!(!said(&huge, &impact(0.1)).contains("mass_kg"));
+}
+
+#[test]
+fn micrometres_as_full_scale_are_told() {
+    let micrometres = TOML.replace("full_scale = 1.0", "full_scale = 100.0");
+    let said = said(&micrometres, &stroke(1, 0.5));
+    assert_says(&said, &["actuator 0: full_scale = 100 is metres", "if these are micrometres, write 1e-4"]);
+}
+
+#[test]
+fn logs_of_other_programs_are_refused_with_line_key_and_reason() {
+    let scene = Scene::new();
+    let good = stroke(1, 0.1);
+    let nan = good.replacen("\"normal_force_n\":0.6", "\"normal_force_n\": NaN", 1);
+    let place = good.replace("\"uv\":[0.1,0.5]", "\"at_m\":[0.01,0.05,0.0]");
+    assert!(nan != good && place != good, "{good}");
+    for (log, parts) in [
+        (nan, &["stroke.jsonl:1: normal_force_n: NaN is no JSON; write a finite number"][..]),
+        (
+            good.replacen("[0.08,0.0]", "[0.08,-Infinity]", 1),
+            &["stroke.jsonl:1: velocity_m_s: -Infinity is no JSON"],
+        ),
+        (
+            "time,u,v,force\n0,0.1,0.2,0.5\n".to_owned(),
+            &["stroke.jsonl:1: is a row of a table (CSV)", "one JSON object a line"],
+        ),
+        (place, &["stroke.jsonl:1: at_m: surface \"plate\" has no frame", "[surface.frame]"]),
+    ] {
+        scene.write("stroke.jsonl", log);
+        assert_refused(&scene.render(&[]), parts);
+    }
+    // A mark of the byte order, as Windows' editors write it, is no fault.
+    scene.write("stroke.jsonl", format!("\u{feff}{good}"));
+    assert!(scene.report(&[])["events"].as_u64().unwrap() > 1);
+    scene.write("scene.toml", "time,u,v,force\n0,0.1,0.2,0.5\n");
+    assert_refused(&scene.render(&[]), &["is a table (CSV), not a scene", "one JSON object a line"]);
+    scene.write("scene.toml", TOML.replace("roughness = 0.7", "solid = \"rough-glas\""));
+    assert_refused(&scene.render(&[]), &["rough-glass"]);
 }

@@ -201,3 +201,55 @@ fn an_input_is_never_written_over() {
     assert_eq!(fs::read(folder.join("map.pgm")).unwrap(), before);
     assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 1);
 }
+
+/// Peak of a WAV file.
+fn peak(path: &Path) -> f32 {
+    samples(path).iter().fold(0.0, |peak, x| peak.max(x.abs()))
+}
+
+#[test]
+fn cloth_and_cushions_are_struck_and_stroked_though_they_have_no_modes() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (stock, name) in [("sheet", "cloth-sheet"), ("cushion", "foam-cushion")] {
+        let report = json_of(folder, &["strike", stock, "-o", stock, "--json"]);
+        let sound = folder.join(format!("{stock}/{name}-wood-1m_s.wav"));
+        assert!((peak(&sound) - 0.89).abs() < 0.01, "{}", peak(&sound));
+        // It does not ring.
+        assert!(report["files"][0]["seconds"].as_f64().unwrap() < 1.0, "{report}");
+    }
+    // A thing too small to be heard says so.
+    let small = asperity(folder, &["strike", "bar", "--size", "0.002", "-o", "small"]);
+    assert_refused(&small, &["bar", "outside 16 Hz to 20 kHz", "--size, --material"]);
+    map(&folder.join("map.pgm"));
+    for (material, stock) in [("cloth", "sheet"), ("carpet", "cushion"), ("steel", "plate")] {
+        let arguments =
+            ["stroke", "map.pgm", "--material", material, "--seconds", "0.3", "-o", material, "--json"];
+        let report = json_of(folder, &arguments);
+        let name = &names(&report)[0];
+        assert!(report["assumed"].to_string().contains(&format!("on a {stock} of {material}")), "{report}");
+        let scene = fs::read_to_string(folder.join(format!("{material}/{name}.toml"))).unwrap();
+        assert!(scene.contains(&format!("stock = \"{stock}\"")), "{scene}");
+        assert!(peak(&folder.join(format!("{material}/{name}.wav"))) > 0.5);
+    }
+}
+
+#[test]
+fn a_photograph_rings_as_the_material_that_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let photo = image::RgbImage::from_fn(96, 96, |x, y| {
+        let joint = x % 24 < 3 || y % 12 < 2;
+        let grain = (x * 7 + y * 13) % 11;
+        image::Rgb(if joint { [90, 85, 80] } else { [150 + grain as u8, 70, 50] })
+    });
+    photo.save(folder.join("wall.png")).unwrap();
+    let arguments = ["stroke", "wall.png", "--material", "brick", "--seconds", "0.3", "-o", "set", "--json"];
+    let report = json_of(folder, &arguments);
+    let name = &names(&report)[0];
+    let scene = fs::read_to_string(folder.join(format!("set/{name}.toml"))).unwrap();
+    assert!(scene.contains("material = \"brick\"") && scene.contains("displacement.png"), "{scene}");
+    assert!(peak(&folder.join(format!("set/{name}.wav"))) > 0.5);
+    let wrong = ["stroke", "wall.png", "--material", "brik", "-o", "other"];
+    assert_refused(&asperity(folder, &wrong), &["--material", "\"brik\" is unknown", "brick"]);
+}

@@ -297,8 +297,15 @@ fn maps_without_relief_and_of_one_texel_s_height_are_no_reason_to_fail() {
         let made = report(&scene, &["metamer", pair[0], pair[1], "-o", "out.png"]);
         assert!(made["mean_after"].as_f64().is_some_and(f64::is_finite), "{made}");
     }
-    let made = report(&scene, &["compare", "flat.png", "other.png", "--strokes", "20"]);
+    let pair = ["compare", "flat.png", "other.png", "--strokes", "20"];
+    let made = report(&scene, &pair);
     assert!((0.0..=1.0).contains(&number(&made["originals"], "mean")));
+    // In words the table says what its rows are, and how large a map was taken to be.
+    let words = asperity(scene.folder.path(), &[&["texture"], &pair[..]].concat());
+    let words = String::from_utf8(words.stdout).unwrap();
+    for part in ["40 mm wide and 2 mm from black to white", "rows and columns are the maps", "\n  2  0."] {
+        assert!(words.contains(part), "{words}");
+    }
     // A grey picture as a normal map, and one that is flat.
     let heights = report(&scene, &["from-normals", "flat.png", "-o", "height.png"]);
     assert!(number(&heights, "relief_per_px").is_finite());

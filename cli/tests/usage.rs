@@ -57,3 +57,18 @@ fn help_and_version_go_to_stdout() {
         assert!(out.contains(option), "{out}");
     }
 }
+
+#[test]
+fn a_number_below_0_is_answered_with_the_range_and_not_with_dashes() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, part) in [
+        (&["strike", "bar", "-o", "x", "--speeds", "-1"][..], "must be a number above 0"),
+        (&["strike", "bar", "-o", "x", "--mass", "-0.1"], "must be a number above 0"),
+        (&["stroke", "wall.png", "-o", "x", "--force", "-2"], "must be a number above 0"),
+        (&["texture", "compare", "a.png", "b.png", "--width-m", "-1"], "above 0"),
+    ] {
+        let (status, _, err) = told(&asperity(folder.path(), arguments));
+        assert_eq!((status, err.lines().count()), (2, 1), "{err}");
+        assert!(err.contains(part) && !err.contains("use '--"), "{err}");
+    }
+}

@@ -18,6 +18,7 @@ pub use error::LogError;
 use keys::Unread;
 pub use names::Names;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -196,6 +197,7 @@ impl ContactLog {
     pub fn parse_telling(text: &str, name: &str) -> Result<(Self, Vec<String>), LogError> {
         let (mut lines, mut unread) = (Vec::new(), Unread::default());
         let mut before = 0.0;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
             let Some(line) = keys::line(text, &place, &mut unread)? else { continue };
@@ -243,6 +245,31 @@ impl ContactLog {
             Some(line.in_log(index, LogError::NoActuator { actuator, channels }))
         };
         self.lines.iter().enumerate().find_map(missing).map_or(Ok(()), Err)
+    }
+
+    /// Tests whether every place of a contact that has no `uv` lies on a surface with a frame;
+    /// `has_frame` answers for a surface's name.
+    ///
+    /// # Errors
+    /// [`LogError::Event`], the first.
+    pub fn check_places(&self, has_frame: impl Fn(&str) -> bool) -> Result<(), LogError> {
+        let mut touched = HashMap::new();
+        for (index, line) in self.lines.iter().enumerate() {
+            let (contact, sample) = match &line.event {
+                LogEvent::Begin { contact, touching, sample } => {
+                    touched.insert(*contact, &*touching.surface);
+                    (contact, sample)
+                }
+                LogEvent::Move { contact, sample, .. } => (contact, sample),
+                _ => continue,
+            };
+            let surface = touched.get(contact).filter(|surface| !has_frame(surface));
+            if let (Some(surface), true, Some(_)) = (surface, sample.uv[0].is_nan(), sample.at_m) {
+                let surface = (*surface).to_owned();
+                return Err(line.in_log(index, LogError::NoFrame { surface }));
+            }
+        }
+        Ok(())
     }
 
     /// Time of the last event, s; 0 for an empty log.

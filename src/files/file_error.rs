@@ -44,6 +44,15 @@ impl FileError {
         self
     }
 
+    /// Takes off an outer place that [`within`](Self::within) has written before what it names.
+    #[must_use]
+    pub fn out_of(mut self, outer: impl fmt::Display) -> Self {
+        if let Some(inner) = self.at.strip_prefix(&format!("{outer}: ")) {
+            self.at = inner.to_owned();
+        }
+        self
+    }
+
     /// A file that could not be read.
     pub fn read(path: &Path, error: &std::io::Error) -> Self {
         match error.kind() {

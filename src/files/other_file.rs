@@ -54,6 +54,12 @@ fn of_text(text: &str) -> Option<(&'static str, &'static str)> {
     if head.starts_with('{') && holds("\"asset\"") {
         return Some(("is a glTF document, not a scene", "`asperity import` makes a scene of it"));
     }
+    let first = head.lines().next().unwrap_or_default();
+    if first.matches([',', ';', '\t']).count() > 1 && !first.contains(['=', '[', '{', '#']) {
+        let right =
+            "a scene is TOML, a contact log one JSON object a line; docs/formats.md has the keys of both";
+        return Some(("is a table (CSV), not a scene", right));
+    }
     let is_mesh = head.lines().any(|line| line.starts_with("v "))
         || head.starts_with("solid ")
         || head.starts_with("$MeshFormat");
@@ -75,6 +81,7 @@ mod tests {
             (b"{\"t\":0,\"event\":\"end\",\"contact\":1}", "contacts = "),
             (b"{\"format\":\"asperity.modes\"}", "[[body]]"),
             (b"# Blender\nv 0 0 0\n", "`asperity modes`"),
+            (b"time,u,v,force\n0,0.1,0.2,0.5\n", "one JSON object a line"),
         ] {
             assert!(other_file(bytes).is_some_and(|(_, right)| right.contains(word)), "{word}");
         }

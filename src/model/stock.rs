@@ -35,7 +35,7 @@ use crate::model::body::Body;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
-use asperity_dsp::limits::material::SIZE_M;
+use asperity_dsp::limits::material::{MASS_KG, SIZE_M};
 use asperity_dsp::mode::Mode;
 use libm::{cos, cosh, exp, sin, sinh};
 use std::f64::consts::{PI, TAU};
@@ -186,10 +186,10 @@ impl Stock {
         Ok(model)
     }
 
-    /// Its mass in a material, kg.
+    /// Its mass in a material, kg, within what a body may have: 1e-6 to 1e6 kg.
     #[must_use]
     pub fn mass_kg(self, material: &Material, size_m: f64) -> f64 {
-        self.shape(material, size_m).mass_kg
+        self.shape(material, size_m).mass_kg.clamp(MASS_KG.low, MASS_KG.high)
     }
 
     fn shape(self, material: &Material, size_m: f64) -> Shape {

@@ -1,7 +1,7 @@
 //! Losses and silence of a render, in the words of scene files and logs: what was refused or lost,
 //! and for each bus and channel that holds nothing its own reason.
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogHand};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine};
 use asperity::files::scene_file::SceneFile;
 use asperity::offline::Render;
 use asperity::{Excitation, SilentBecause, SurfaceId};
@@ -33,8 +33,23 @@ impl Rendered<'_> {
     /// Events that were refused, lost or contradict themselves: one line each, with what mends it.
     #[must_use]
     pub fn losses(&self) -> Vec<String> {
-        let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0);
-        lost.map(|reason| self.in_words(reason)).collect()
+        let backwards =
+            |line: &&LogLine| matches!(line.event, LogEvent::Impact { speed_m_s, .. } if speed_m_s <= 0.0);
+        let mut still = self.log.lines.iter().filter(backwards).peekable();
+        let first_s = still.peek().map(|line| line.t);
+        let still = still.count() as u64;
+        // A speed below 0 counts as 0, which is told by itself.
+        let own =
+            |reason: &&SilentBecause| matches!(reason, SilentBecause::Held { count } if *count <= still);
+        let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0 && !own(reason));
+        let mut told: Vec<String> = lost.map(|reason| singular(self.in_words(reason))).collect();
+        told.extend(first_s.map(|t| {
+            singular(format!(
+                "{still} impacts were silent for their speed_m_s of 0 or below, the first at t = {t} s; write the speed of \
+                 approach before the blow, not after it"
+            ))
+        }));
+        told
     }
 
     /// Buses and channels that hold nothing: one line each, with its own reason.
@@ -243,18 +258,46 @@ impl Rendered<'_> {
             }
             SilentBecause::AudioGainZero => "gain under [audio] is 0; raise it".to_owned(),
             SilentBecause::NothingRings => {
+                let touched = self.touched();
+                let mut bodies = self.file.bodies.iter().filter(|body| touched.contains(&*body.name));
+                if let Some(body) = bodies.find(|body| body.stock.is_some()) {
+                    return format!(
+                        "body \"{}\" rings outside 16 Hz to 20 kHz only; change its size_m or its material \
+                         (density_kg_m3 is some 1000 times g/cm³)",
+                        body.name
+                    );
+                }
                 "nothing touched has modes; write body = \"NAME\" in [[surface]] and modes = \"FILE\" in [[body]]"
                     .to_owned()
             }
             SilentBecause::Contradicts(contradiction) => {
-                let name = self.surfaces.iter().find(|(_, id)| *id == contradiction.surface()).map(|(name, _)| name);
+                let name =
+                    self.surfaces.iter().find(|(_, id)| *id == contradiction.surface()).map(|(name, _)| name);
                 let several = self.file.surfaces.len() > 1;
-                let on = name.filter(|_| several).map_or_else(String::new, |name| format!("surface \"{name}\": "));
+                let on =
+                    name.filter(|_| several).map_or_else(String::new, |name| format!("surface \"{name}\": "));
                 format!("{on}{contradiction}")
             }
             other => other.to_string(),
         }
     }
+}
+
+/// A line that counts something, as it is said of one.
+fn singular(told: String) -> String {
+    let one = told.strip_prefix("1 ").and_then(|rest| rest.split_once(' '));
+    let Some((noun, rest)) = one else { return told };
+    let rest = [
+        ("collisions ", "collision "),
+        ("changes ", "change "),
+        (" were ", " was "),
+        (" their ", " its "),
+        (" them ", " it "),
+        (" speak ", " speaks "),
+    ]
+    .iter()
+    .fold(format!(" {rest}"), |rest, (many, one)| rest.replacen(many, one, 1));
+    format!("1 {}{rest}", noun.strip_suffix('s').unwrap_or(noun))
 }
 
 /// Hand of an event: the channel that feels it, and its gain.

@@ -2,7 +2,7 @@
 //! a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
 //! is right or wrong.
 
-use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
+use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, decibels, palette, spectrogram};
 use asperity_fit::{Fit, Recording};
 
 /// Most modes whose ring is drawn as a line.
@@ -16,8 +16,10 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
     let rate = fit.sample_rate_hz;
     let start_s = recording.starts_at_s;
     let mut figure = Figure::new(format!("{}: {} modes", fit.source, fit.modes.len())).subtitle(format!(
-        "struck body {:.1} dB above what is left, its peak {:+.1} dB of the recording's, onset {:.4} s",
-        fit.snr_from_onset_db, fit.struck_peak_db, fit.onset_s
+        "struck body {:.1} dB above what is left, its peak {} dB of the recording's, onset {:.4} s",
+        fit.snr_from_onset_db,
+        decibels(fit.struck_peak_db),
+        fit.onset_s
     ));
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));
@@ -53,7 +55,9 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
         let picture = spectrogram(samples, rate, &options);
         // All three on the recording's scale.
         options.top_db = options.top_db.or(picture.bar.as_ref().map(|bar| bar.range[1]));
-        let mut panel = Panel::new(title, Axis::new("time", "s"), Axis::log("frequency", "Hz")).with(picture);
+        // A mode above the picture's top leaves no strip there.
+        let frequency = Axis::log("frequency", "Hz").range(picture.y[0], picture.y[1]);
+        let mut panel = Panel::new(title, Axis::new("time", "s"), frequency).with(picture);
         if with_modes {
             let end_s = start_s + recording.samples.len() as f64 / rate;
             for mode in fit.modes.iter().take(DRAWN) {

@@ -82,11 +82,11 @@ impl Report {
     /// Tells a person.
     pub fn say(&self, options: &Options) -> Result<(), CliError> {
         output::say(&format!(
-            "{}: {} modes, {:.1} dB above what they leave, struck {:+.1} dB of the recording's peak, onset at {:.4} s, noise {:.0} dB; {:.1} s",
+            "{}: {} modes, {:.1} dB above what they leave, struck {} dB of the recording's peak, onset at {:.4} s, noise {:.0} dB; {:.1} s",
             options.output.display(),
             self.modes,
             self.snr_from_onset_db,
-            self.struck_peak_db,
+            crate::plot::decibels(self.struck_peak_db),
             self.onset_s,
             self.noise_floor_db,
             self.seconds

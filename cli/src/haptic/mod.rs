@@ -115,7 +115,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         }
     });
     if let Some(path) = &options.plot {
-        let title = format!("{} on {}", name_of(&options.input), device.label);
+        let title = format!("{}, as it was and as left for: {}", name_of(&options.input), device.label);
         outputs.write(path, picture::svg(&title, &made, &device).as_bytes())?;
     }
     let report = Report {
@@ -318,8 +318,11 @@ fn say(report: &Report, path: &Path) -> Result<(), CliError> {
     ));
     if let Some(score) = report.score {
         output::say(&format!(
-            "what is left: third octaves in band off by {:.1} dB, balance {:.1} dB, level {:+.1} dB, envelope {:.3}",
-            score.in_band_error_db, score.balance_db, score.level_bias_db, score.envelope_correlation
+            "what is left: third octaves in band off by {:.1} dB, balance {:.1} dB, level {} dB, envelope {:.3}",
+            score.in_band_error_db,
+            score.balance_db,
+            crate::plot::decibels(score.level_bias_db),
+            score.envelope_correlation
         ));
     }
     for warning in &report.warnings {

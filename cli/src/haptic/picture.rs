@@ -6,7 +6,7 @@ use crate::plot::{
 };
 use asperity_ports::{Device, felt};
 
-/// The picture as SVG.
+/// The picture as SVG; `title` says what was made of what.
 pub fn svg(title: &str, made: &Made, device: &Device) -> String {
     let mut figure = Figure::new(title)
         .subtitle(format!("{:.2} s, {} points, gain {:.3}", made.duration_s, made.points, made.gain));
@@ -68,7 +68,7 @@ fn thirds(made: &Made, device: &Device) -> Panel {
         let bands = third_octaves(&felt::felt(samples), felt::RATE_HZ);
         Series::Points(bands.into_iter().filter(|p| (16.0..=900.0).contains(&p[0])).collect())
     };
-    Panel::new("what is felt, by third octaves", Axis::log("frequency", "Hz"), Axis::new("level", "dB"))
+    Panel::new("felt, by third octaves", Axis::log("frequency", "Hz"), Axis::new("level", "dB re threshold"))
         .with(Layer::line("was", palette::GROUND_EDGE, felt_thirds(&made.original)))
         .with(Layer::line("is left", palette::HAPTIC, felt_thirds(&made.left)))
         .with(Layer::Rules {

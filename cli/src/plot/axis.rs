@@ -11,15 +11,13 @@ pub struct Axis {
     pub log: bool,
     /// Ends; none = as the data need.
     pub range: Option<[f64; 2]>,
-    /// Writes numbers at the ticks.
-    pub numbers: bool,
 }
 
 impl Axis {
     /// A linear axis.
     #[must_use]
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { label: label.into(), unit: unit.into(), log: false, range: None, numbers: true }
+        Self { label: label.into(), unit: unit.into(), log: false, range: None }
     }
 
     /// A logarithmic axis.
@@ -40,13 +38,6 @@ impl Axis {
     pub fn above_zero(self, high: f64) -> Self {
         let high = if high.is_finite() && high > 0.0 { high } else { 1.0 };
         self.range(0.0, high * 1.15)
-    }
-
-    /// Leaves the numbers to the panel below, which has the same axis.
-    #[must_use]
-    pub fn without_numbers(mut self) -> Self {
-        self.numbers = false;
-        self
     }
 }
 
@@ -86,6 +77,19 @@ pub fn quantity(value: f64, unit: &str) -> String {
     };
     let space = if unit == "%" { "" } else { " " };
     format!("{}{space}{name}{unit}", minus(&format!("{scaled:.digits$}"))).trim_end().to_owned()
+}
+
+/// A difference in decibels with its sign, one digit, no −0.0: `+1.2`, `−0.1`.
+#[must_use]
+pub fn decibels(value: f64) -> String {
+    let tenths = (10.0 * value).round() / 10.0;
+    if tenths == 0.0 { "0.0".to_owned() } else { minus(&format!("{tenths:+.1}")) }
+}
+
+/// A count and what is counted: `1 event`, `2 events`.
+#[must_use]
+pub fn counted(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A typographic minus.
@@ -158,7 +162,10 @@ impl Ruler {
         let decades = (to / from).log10();
         // `1k` is half as wide as `1.75`.
         let every = (decades / (2 * count).max(1) as f64).ceil().max(1.0) as i64;
-        let numbered: &[i64] = if decades * 3.0 <= count as f64 { &[1, 2, 5] } else { &[1] };
+        let tens = (from.log10() - 1e-9).ceil() as i64..=(to.log10() + 1e-9).floor() as i64;
+        // One number says nothing about a scale.
+        let dense = decades * 3.0 <= count as f64 || tens.count() < 2;
+        let numbered: &[i64] = if dense { &[1, 2, 5] } else { &[1] };
         let mut ticks = Vec::new();
         for decade in from.log10().floor() as i64..=to.log10().ceil() as i64 {
             for digit in 1..10 {
@@ -259,6 +266,8 @@ mod tests {
         assert_eq!(quantity(-0.25, "N·s"), "−250 mN·s");
         assert_eq!(quantity(44_100.0, "Hz"), "44.1 kHz");
         assert_eq!(quantity(-61.25, "dB"), "−61.2 dB");
+        assert_eq!([-0.04, -0.06, 1.23].map(decibels), ["0.0", "−0.1", "+1.2"]);
+        assert_eq!([counted(0, "event"), counted(1, "event")], ["0 events", "1 event"]);
     }
 
     #[test]
@@ -282,6 +291,9 @@ mod tests {
         let texts: Vec<&str> =
             ruler.ticks.iter().map(|tick| tick.text.as_str()).filter(|text| !text.is_empty()).collect();
         assert_eq!(texts, ["20", "50", "100", "200", "500", "1k", "2k", "5k", "10k", "20k"]);
+        // One decade alone is no scale, however low the panel.
+        let low = Ruler::new(&Axis::log("frequency", "Hz").range(20.0, 800.0), 0.0, 0.0, 2);
+        assert_eq!(low.ticks.iter().filter(|tick| !tick.text.is_empty()).count(), 5);
         assert!((ruler.place(200.0) - 1.0 / 3.0).abs() < 1e-12);
     }
 

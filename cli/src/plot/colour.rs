@@ -14,9 +14,10 @@ pub mod palette {
     pub const HAPTIC: &str = "#00796b";
     /// Heard.
     pub const AUDIO: &str = "#5e35b1";
-    /// Distinct colours for rows of things without a meaning of their own.
+    /// Distinct colours for rows of things without a meaning of their own; the first is the pad's,
+    /// where it is alone.
     pub const SERIES: [&str; 8] =
-        ["#1565c0", "#d84315", "#00796b", "#5e35b1", "#c28a00", "#ad1457", "#558b2f", "#455a64"];
+        ["#1565c0", "#558b2f", "#ad1457", "#c28a00", "#455a64", "#00acc1", "#8d6e63", "#9e9d24"];
 }
 
 /// A colour scale from 0 to 1.

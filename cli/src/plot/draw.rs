@@ -11,7 +11,6 @@ const RIGHT_PX: f64 = 22.0;
 const RIGHT_WITH_BAR_PX: f64 = 74.0;
 const HEAD_PX: f64 = 26.0;
 const FOOT_PX: f64 = 40.0;
-const FOOT_WITHOUT_NUMBERS_PX: f64 = 8.0;
 const INK: &str = "#222";
 const FAINT: &str = "#667";
 const GRID: &str = "#e8eaed";
@@ -51,8 +50,7 @@ fn draw_row(svg: &mut Svg, row: &Row, top: f64, width_px: f64, any_bar: bool) ->
         draw_panel(svg, panel, if panel.true_scale { to_scale(panel, plot) } else { plot });
         x += cell;
     }
-    let numbers = row.panels.iter().any(|panel| panel.x.numbers);
-    top + HEAD_PX + row.height_px + if numbers { FOOT_PX } else { FOOT_WITHOUT_NUMBERS_PX }
+    top + HEAD_PX + row.height_px + FOOT_PX
 }
 
 /// The largest part of the place in which a unit is as long across as down.
@@ -112,7 +110,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, plot: [f64; 4]) {
     }
     svg.end_clip();
     svg.rect(plot, "", FRAME);
-    draw_numbers(svg, panel, &place);
+    draw_numbers(svg, &place);
     draw_head(svg, panel, plot);
     if let Some(picture) = bar_of(panel) {
         draw_bar(svg, picture, plot);
@@ -202,29 +200,23 @@ fn draw_grid(svg: &mut Svg, place: &Place) {
     }
 }
 
-fn draw_numbers(svg: &mut Svg, panel: &Panel, place: &Place) {
+fn draw_numbers(svg: &mut Svg, place: &Place) {
     let [left, top, width, height] = place.plot;
     let small = TextStyle { size: 10.5, colour: FAINT, ..Default::default() };
     for tick in &place.x.ticks {
         let x = place.x(tick.at);
         let long = if tick.text.is_empty() { 2.5 } else { 4.5 };
         svg.line([x, top + height], [x, top + height + long], FRAME, 1.0);
-        if panel.x.numbers {
-            svg.text([x, top + height + 16.0], TextStyle { anchor: "middle", ..small }, &tick.text);
-        }
+        svg.text([x, top + height + 16.0], TextStyle { anchor: "middle", ..small }, &tick.text);
     }
     for tick in &place.y.ticks {
         let y = place.y(tick.at);
         let long = if tick.text.is_empty() { 2.5 } else { 4.5 };
         svg.line([left - long, y], [left, y], FRAME, 1.0);
-        if panel.y.numbers {
-            svg.text([left - 7.0, y + 3.6], TextStyle { anchor: "end", ..small }, &tick.text);
-        }
+        svg.text([left - 7.0, y + 3.6], TextStyle { anchor: "end", ..small }, &tick.text);
     }
     let axis = TextStyle { anchor: "middle", size: 11.0, colour: INK, ..Default::default() };
-    if panel.x.numbers {
-        svg.text([left + width / 2.0, top + height + 31.0], axis, &place.x.caption);
-    }
+    svg.text([left + width / 2.0, top + height + 31.0], axis, &place.x.caption);
     let at = [left - 54.0, top + height / 2.0];
     svg.text(at, TextStyle { upwards: true, ..axis }, &place.y.caption);
 }

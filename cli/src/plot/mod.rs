@@ -22,7 +22,7 @@ mod draw;
 mod spectrogram;
 mod svg;
 
-pub use axis::{Axis, quantity};
+pub use axis::{Axis, counted, decibels, quantity};
 pub use colour::palette;
 pub use spectrogram::{SpectrogramOptions, spectrogram, third_octaves};
 pub use svg::{Svg, TextStyle};

@@ -144,12 +144,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let files: Vec<String> = report.files.iter().map(|path| path.display().to_string()).collect();
     output::say(&format!(
-        "{} of signal at {:.0}× real time: {} events, {} micro-collisions, {} impacts; audio peak {:.3}\nwrote {}",
+        "{} of signal at {:.0}× real time: {}, {}, {}; audio peak {:.3}\nwrote {}",
         plot::quantity(report.duration_s, "s"),
         report.real_time_factor,
-        report.events,
-        report.micro_collisions,
-        report.impacts,
+        plot::counted(report.events, "event"),
+        plot::counted(report.micro_collisions, "micro-collision"),
+        plot::counted(report.impacts, "impact"),
         report.audio_peak,
         files.join(", "),
     ));

@@ -12,10 +12,14 @@ use asperity_texture::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
 pub const DRAWN_CONTACTS: usize = 8;
-/// With more contacts than this the legend has room for their numbers only.
-const NAMED_CONTACTS: usize = 3;
+/// Letters that a legend has room for beside the title, and how many a swatch takes; where names
+/// need more, numbers stand there.
+const MOST_LETTERS: usize = 126;
+const LEGEND_LETTERS: usize = 6;
 /// Length of the enlarged instant, s.
 const ZOOM_S: f64 = 0.03;
+/// A curve that moves by less within it is flat, m.
+const FLAT_M: f64 = 1e-8;
 /// Between two reports of most games, s.
 const REPORT_S: f64 = 1.0 / 60.0;
 
@@ -181,9 +185,10 @@ fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 
 /// Text of the legend: the pad where there is one contact, and as much of each name as there is
 /// room for where there are more. The colours are those of the force and speed panels above.
 fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
+    let letters: usize = drawn(take).map(|(contact, _)| LEGEND_LETTERS + contact.label.chars().count()).sum();
     match take.contacts.len() {
         0 | 1 => "pad".to_owned(),
-        2..=NAMED_CONTACTS => contact.label.clone(),
+        _ if letters <= MOST_LETTERS => contact.label.clone(),
         _ => contact.label.split(' ').next().unwrap_or_default().to_owned(),
     }
 }
@@ -191,14 +196,11 @@ fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
 fn profile_panel(take: &Take<'_>) -> Panel {
     let hidden = take.contacts.len().saturating_sub(DRAWN_CONTACTS);
     let title = if hidden > 0 {
-        format!(
-            "surface passing below, and the pad on it (first {DRAWN_CONTACTS} of {} contacts)",
-            take.contacts.len()
-        )
+        format!("surface and pad (first {DRAWN_CONTACTS} of {} contacts)", take.contacts.len())
     } else {
-        "surface passing below, and the pad on it".to_owned()
+        "surface and pad".to_owned()
     };
-    let mut panel = Panel::new(title, time(take).without_numbers(), Axis::new("height", "m"));
+    let mut panel = Panel::new(title, time(take), Axis::new("height", "m"));
     for (index, (contact, colour)) in drawn(take).enumerate() {
         let surface = Series::signal(contact.height_m.iter().copied(), take.sample_rate_hz, contact.start_s);
         let pad = Series::signal(contact.pad_m.iter().copied(), take.sample_rate_hz, contact.start_s);
@@ -280,12 +282,17 @@ fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
     let collisions = inside(&contact.collisions);
     let label = if collisions.is_empty() { "" } else { "collision" };
     let axis = Axis::new("time", "s").range(from_s, from_s + ZOOM_S);
-    let zoom = Panel::new(format!("{:.0} ms of it, enlarged", ZOOM_S * 1e3), axis, Axis::new("height", "m"))
+    let (of, colour) = match take.contacts.len() {
+        1 => ("it", palette::PAD),
+        _ => (&*contact.label, drawn(take).nth(index).map_or(palette::PAD, |(_, colour)| colour)),
+    };
+    let title = format!("{:.0} ms of {of}, enlarged", ZOOM_S * 1e3);
+    let zoom = Panel::new(title, axis, Axis::new("height", "m"))
         .weight(2.0)
         .with(Layer::ground("surface", part(&contact.height_m)))
         .with(Layer::Line {
             label: "pad".to_owned(),
-            colour: palette::PAD.to_owned(),
+            colour: colour.to_owned(),
             width_px: 1.8,
             fill: None,
             dashed: false,
@@ -298,7 +305,13 @@ fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
             radius_px: vec![3.5],
             names: Vec::new(),
         });
-    let mut panels = vec![zoom, levels_panel(take)];
+    // On flat ground there is nothing to enlarge.
+    let swing_m = [&contact.height_m, &contact.pad_m].map(|curve| {
+        let cut = curve.get(first..last).unwrap_or(&[]);
+        cut.iter().copied().fold(f64::MIN, f64::max) - cut.iter().copied().fold(f64::MAX, f64::min)
+    });
+    let moves = swing_m.iter().any(|swing_m| *swing_m > FLAT_M);
+    let mut panels: Vec<Panel> = moves.then_some(zoom).into_iter().chain([levels_panel(take)]).collect();
     // Several surfaces have rows of their own.
     if let [ground] = &take.grounds[..] {
         panels.push(ground_panel(take, ground));
@@ -364,7 +377,11 @@ fn on_one_tile(path_uv: &[[f64; 2]], ground: &Ground) -> Vec<[f64; 2]> {
 /// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
 fn levels_panel(take: &Take<'_>) -> Panel {
     let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
-    let mut panel = Panel::new("spectra", frequency, Axis::new("third-octave level", "dB").range(-70.0, 3.0));
+    let mut panel = Panel::new(
+        "spectra",
+        frequency,
+        Axis::new("third-octave level", "dB re strongest").range(-70.0, 3.0),
+    );
     let curves = take
         .haptic
         .first()
@@ -391,7 +408,7 @@ fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &Hap
     };
     let wave = Panel::new(
         format!("haptic channel{number}: pad {}{growing}", channel.quantity),
-        time(take).without_numbers(),
+        time(take),
         Axis::new(channel.quantity, channel.unit),
     )
     .with(Layer::line("", palette::HAPTIC, Series::signal(values, take.sample_rate_hz, 0.0)))
@@ -416,7 +433,7 @@ fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &Hap
 
 fn audio_rows(figure: &mut Figure, take: &Take<'_>) {
     let values = take.audio.iter().map(|&sample| f64::from(sample));
-    let wave = Panel::new("audio", time(take).without_numbers(), Axis::new("sample value", ""))
+    let wave = Panel::new("audio", time(take), Axis::new("sample value", ""))
         .with(Layer::line("", palette::AUDIO, Series::signal(values, take.sample_rate_hz, 0.0)))
         .with(impact_rules(take));
     let options = SpectrogramOptions { unit: "dB re 1".to_owned(), ..SpectrogramOptions::default() };

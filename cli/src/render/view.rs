@@ -44,13 +44,13 @@ pub fn draw(
     picture::draw(&Take {
         title: title(&file.path),
         summary: vec![format!(
-            "{} at {} Hz · {} · {} events, {} micro-collisions, {} impacts · audio peak {}",
+            "{} at {} Hz · {} · {}, {}, {} · audio peak {}",
             plot::quantity(report.duration_s, "s"),
             report.sample_rate_hz,
             if surfaces.is_empty() { "no surface".to_owned() } else { surfaces.join(", ") },
-            report.events,
-            report.micro_collisions,
-            report.impacts,
+            plot::counted(report.events, "event"),
+            plot::counted(report.micro_collisions, "micro-collision"),
+            plot::counted(report.impacts, "impact"),
             plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
         )],
         sample_rate_hz: render.sample_rate_hz,

@@ -60,6 +60,11 @@ fn axes(svg: &mut Svg, [x, y]: [f64; 2], wanted: Integrator) {
         let label = format!("{} kHz", rate_hz / 1e3);
         svg.text([middle, bottom + 15.0], TextStyle { anchor: "middle", ..style }, &label);
     }
+    let middle = |of: f64, cells: usize| 0.5 * of * cells as f64;
+    let across = [x + middle(CELL_PX[0], RATES_HZ.len()), bottom + 32.0];
+    svg.text(across, TextStyle { anchor: "middle", ..style }, "sample rate");
+    let up = [x - 78.0, bottom - middle(CELL_PX[1], STIFFNESS_N_M.len())];
+    svg.text(up, TextStyle { anchor: "middle", upwards: true, ..style }, "stiffness of the contact");
     for (row, stiffness_n_m) in STIFFNESS_N_M.into_iter().enumerate() {
         let middle = bottom - CELL_PX[1] * (row as f64 + 0.5) + 4.0;
         let bold = stiffness_n_m == CONTACT_STIFFNESS_N_M;

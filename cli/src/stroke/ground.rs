@@ -3,7 +3,7 @@
 use super::Options;
 use crate::error::CliError;
 use crate::sounds::{Folder, stem, with_absolute_paths};
-use crate::strike::has_end;
+use crate::strike::{has_end, slowest_per_s};
 use crate::texture::from_photo;
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::{Material, ModalModel, PROBE_PRESETS, Wrap};
@@ -15,12 +15,16 @@ use toml::{Table, Value};
 
 /// Height of white over black of a map that does not say, m.
 const RELIEF_M: f64 = 1e-3;
-/// A map's body: a plate of that material, so many metres along its side.
+/// Material of a map's body where nothing is said, and its side, m: a plate, but a sheet or a
+/// cushion of what does not ring.
 const BODY: (&str, f64) = ("wood", 0.2);
+/// Bodies of what does not ring: stock, side, m, and materials.
+const SOFT: [(&str, f64, [&str; 5]); 2] = [
+    ("sheet", 0.5, ["cloth", "denim", "leather", "cardboard", "paper"]),
+    ("cushion", 0.4, ["foam", "carpet", "soil", "cork", "skin"]),
+];
 /// A picture whose red and blue differ by more than this in the mean is a photograph.
 const COLOURED: f64 = 0.01;
-/// Longest ring-out that is looked at where nothing says how long bodies ring, s.
-const TAIL_S: f64 = 5.0;
 
 /// Ground that is stroked.
 pub struct Ground {
@@ -74,10 +78,8 @@ impl Ground {
     }
 
     fn of_photo(options: &Options, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
-        if options.material.is_some() {
-            let right = "leave it out, or put a body into the scene that from-photo makes and stroke that";
-            return Err(CliError::new("--material", "is for maps", right));
-        }
+        let material = options.material.as_deref();
+        let body = material.map(|material| body_of(material, "plate")).transpose()?;
         let name = stem(&options.what);
         let maps = folder.path().join(format!("{name}-surface"));
         let report = from_photo::make(&from_photo::Options {
@@ -88,8 +90,13 @@ impl Ground {
         let mut assumed =
             vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];
         assumed.extend(report.warnings().iter().map(|warning| format!("warning: {warning}")));
-        let plain = Options { width_m: None, relief_m: None, ..options.clone() };
+        let plain = Options { width_m: None, relief_m: None, material: None, ..options.clone() };
         let mut ground = Self::of_scene(&plain, &maps.join("scene.toml"), name)?;
+        if let Some(body) = body {
+            let mut scene = ground.scene;
+            scene.insert("body".into(), Value::Array(vec![Value::Table(body)]));
+            ground = Self { inputs: ground.inputs, ..Self::of_table(&plain, scene, &maps, ground.name)? };
+        }
         ground.inputs.push(options.what.clone());
         Ok((ground, assumed))
     }
@@ -108,27 +115,16 @@ impl Ground {
             assumed.push(format!("white taken to be {} mm above black (--relief-m)", 1e3 * RELIEF_M));
             RELIEF_M
         });
-        let material = match &options.material {
-            None => {
-                assumed.push(format!("on a plate of {}, {} m (--material)", BODY.0, BODY.1));
-                BODY.0
-            }
-            Some(name) if Material::by_name(name).is_some() => name,
-            Some(name) => {
-                let right = format!("must be one of: {}", Material::names());
-                return Err(CliError::new("--material", format!("\"{name}\" is unknown"), right));
-            }
-        };
+        let material = options.material.as_deref().unwrap_or(BODY.0);
+        let body = body_of(material, "body")?;
+        let named = if options.material.is_none() { " (--material)" } else { "" };
+        let (stock, size_m) = (body["stock"].as_str().unwrap_or_default(), &body["size_m"]);
+        assumed.push(format!("on a {stock} of {material}, {size_m} m{named}"));
         let path = fs::canonicalize(what).map_err(|error| CliError::read(what, &error))?;
         let text = |text: &str| Value::String(text.to_owned());
-        let mut body = Table::new();
-        body.insert("name".into(), text("plate"));
-        body.insert("stock".into(), text("plate"));
-        body.insert("size_m".into(), Value::Float(BODY.1));
-        body.insert("material".into(), text(material));
         let mut surface = Table::new();
         surface.insert("name".into(), text("map"));
-        surface.insert("body".into(), text("plate"));
+        surface.insert("body".into(), text("body"));
         surface.insert("displacement".into(), text(&path.to_string_lossy()));
         surface.insert("width_m".into(), Value::Float(width_m));
         surface.insert("height_m".into(), Value::Float(width_m * map.height as f64 / map.width as f64));
@@ -183,15 +179,6 @@ impl Ground {
                 ),
             }
         })?;
-        let decays = file.bodies.iter().filter_map(|body| match (&body.modes, &body.stock) {
-            (Some(path), _) => ModalModel::load(path).ok(),
-            (None, Some((stock, size_m))) => {
-                stock.modes(&body.material.unwrap_or(Material::PLA), *size_m).ok()
-            }
-            (None, None) => None,
-        });
-        let slowest =
-            decays.flat_map(|model| model.modes).map(|mode| mode.decay_per_s).fold(f64::INFINITY, f64::min);
         let probe = scene.get("probe").and_then(|probe| probe.get("preset")).and_then(Value::as_str);
         Ok(Self {
             name,
@@ -199,11 +186,7 @@ impl Ground {
             extent_m: [surface.width_m, surface.height_m],
             runs_on: surface.wrap != Wrap::Clamp && !matches!(surface.source, Source::Sand(_)),
             probe: probe.unwrap_or("fingertip").to_owned(),
-            tail_s: if slowest.is_finite() {
-                (9.21 / slowest.max(1e-3)).clamp(0.3, 20.0)
-            } else {
-                TAIL_S.min(0.3)
-            },
+            tail_s: tail_s(&file),
             inputs: file.named_files().into_iter().map(Path::to_owned).collect(),
             scene,
         })
@@ -241,6 +224,34 @@ impl Ground {
             }
         }
     }
+}
+
+/// Wait for what rings, s.
+fn tail_s(file: &SceneFile) -> f64 {
+    let models = file.bodies.iter().filter_map(|body| match (&body.modes, &body.stock) {
+        (Some(path), _) => ModalModel::load(path).ok(),
+        (None, Some((stock, size_m))) => stock.modes(&body.material.unwrap_or(Material::PLA), *size_m).ok(),
+        (None, None) => None,
+    });
+    let slowest_per_s = models.map(|model| slowest_per_s(&model)).fold(f64::INFINITY, f64::min);
+    if slowest_per_s.is_finite() { (9.21 / slowest_per_s.max(1e-3)).clamp(0.3, 20.0) } else { 0.3 }
+}
+
+/// A body of a material, as a `[[body]]`.
+fn body_of(material: &str, name: &str) -> Result<Table, CliError> {
+    if Material::by_name(material).is_none() {
+        let right = format!("must be one of: {}", Material::names());
+        return Err(CliError::new("--material", format!("\"{material}\" is unknown"), right));
+    }
+    let soft = SOFT.iter().find(|(_, _, materials)| materials.contains(&material));
+    let (stock, size_m) = soft.map_or(("plate", BODY.1), |(stock, size_m, _)| (stock, *size_m));
+    let text = |text: &str| Value::String(text.to_owned());
+    let mut body = Table::new();
+    body.insert("name".into(), text(name));
+    body.insert("stock".into(), text(stock));
+    body.insert("size_m".into(), Value::Float(size_m));
+    body.insert("material".into(), text(material));
+    Ok(body)
 }
 
 /// A picture in colours is a photograph, as is a JPEG; a grey one is a map.

@@ -25,7 +25,9 @@ const SETTLED_S: f64 = 1.0;
 /// sound beside it
 #[derive(Debug, Clone, Args)]
 pub struct Options {
-    /// A height map, a photograph, a folder of `asperity texture from-photo`, or a scene
+    /// A height map, a photograph, a folder of `asperity texture from-photo`, or a scene. A JPEG or
+    /// a picture in colours is a photograph, a grey picture of another format a height map; a grey
+    /// photograph goes through `asperity texture from-photo` first
     #[arg(value_name = "MAP|PHOTO|DIR|SCENE.toml")]
     pub what: PathBuf,
     /// Probe: fingertip, fingernail, stylus, …, or a probe of the scene [default: the scene's]
@@ -57,7 +59,8 @@ pub struct Options {
     /// photograph]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub relief_m: Option<f64>,
-    /// Material of a map's body [default: wood]
+    /// Material of the body under a map or a photograph: a plate, a sheet of cloth, a cushion of
+    /// foam [default: wood under a map]
     #[arg(long, value_name = "NAME")]
     pub material: Option<String>,
     /// Folder, format, takes

@@ -106,6 +106,12 @@ fn in_words(report: &Report) -> String {
     for (number, path) in report.maps.iter().enumerate() {
         text.push_str(&format!("{}  {}\n", number + 1, path.display()));
     }
+    text.push_str(&format!(
+        "\ntaken to be {} mm wide and {} mm from black to white (--width-m, --relief-m); rows and columns are the maps \
+         above by number, a cell how often strokes of the two are told apart: 0.5 is chance, 1.0 always\n",
+        1e3 * report.width_m,
+        1e3 * report.relief_m
+    ));
     let tables = [
         ("originals", Some(&report.originals)),
         ("single pass", report.single_pass.as_ref()),
@@ -117,11 +123,12 @@ fn in_words(report: &Report) -> String {
         text.push_str(&format!(
             "\n{name}: the first against the others {reference:.2}, all pairs {mean:.2}, same against same {same:.2}\n"
         ));
-        for row in &table.rows {
+        let numbers: Vec<String> = (1..=table.rows.len()).map(|number| format!("{number:4}")).collect();
+        text.push_str(&format!("     {}\n", numbers.join("  ")));
+        for (row, number) in table.rows.iter().zip(1..) {
             let cells: Vec<String> = row.iter().map(|cell| format!("{cell:.2}")).collect();
-            text.push_str(&format!("  {}\n", cells.join("  ")));
+            text.push_str(&format!("{number:3}  {}\n", cells.join("  ")));
         }
     }
-    text.push_str("\n0.5 is chance; 1.0: always told apart");
-    text
+    text.trim_end().to_owned()
 }

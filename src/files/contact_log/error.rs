@@ -75,6 +75,14 @@ pub enum LogError {
         /// Number that there is.
         channels: usize,
     },
+    /// A place of the body, on a surface that does not lie in it.
+    #[error(
+        "at_m: surface \"{surface}\" has no frame that tells uv of it; write [surface.frame] in the scene, or \"uv\" in the log"
+    )]
+    NoFrame {
+        /// Name of the surface.
+        surface: String,
+    },
     /// An edit that cannot be made.
     #[error("t = {t} s: {problem}")]
     CannotEdit {

@@ -165,7 +165,7 @@ pub(super) fn line(
     place: &dyn Fn() -> String,
     unread: &mut Unread,
 ) -> Result<Option<Line>, LogError> {
-    let Object(mut keys) = serde_json::from_str(text).map_err(|error| malformed(place(), &error))?;
+    let Object(mut keys) = serde_json::from_str(text).map_err(|error| malformed(text, place(), &error))?;
     let refuse = |key: &str, what: String, right: String| LogError::Key {
         place: place(),
         key: key.into(),
@@ -307,10 +307,30 @@ fn shown(value: &Value) -> String {
     }
 }
 
-fn malformed(place: String, error: &serde_json::Error) -> LogError {
+fn malformed(line: &str, place: String, error: &serde_json::Error) -> LogError {
+    if let Some((key, word)) = no_number(line) {
+        let right = "write a finite number, or leave out what is not known".to_owned();
+        return LogError::Key { place, key, what: format!("{word} is no JSON"), right };
+    }
+    if !line.contains('{') && line.matches([',', ';', '\t']).count() > 1 {
+        return LogError::Malformed { place, message: "is a row of a table (CSV), not of a log".to_owned() };
+    }
     let text = error.to_string();
     let what = text.split(" at line ").next().unwrap_or_default();
     LogError::Malformed { place, message: format!("{what} at column {}", error.column()) }
+}
+
+/// The first number that other writers of JSON write and JSON does not have, and its key.
+fn no_number(line: &str) -> Option<(String, &'static str)> {
+    let at = |word: &'static str| {
+        let places = line.match_indices(word).map(|(place, _)| place);
+        let is_value = |place: &usize| line[..*place].trim_end().ends_with([':', '[', ',']);
+        Some((places.into_iter().find(is_value)?, word))
+    };
+    let (place, word) = ["NaN", "-Infinity", "Infinity"].into_iter().filter_map(at).min()?;
+    let (before, _) = line[..place].rsplit_once(':')?;
+    let key = before.trim_end().trim_end_matches('"').rsplit('"').next()?;
+    Some((key.to_owned(), word))
 }
 
 /// A JSON object whose keys are each written once.

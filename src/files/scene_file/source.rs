@@ -196,7 +196,7 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
 
 fn solid_preset(fields: &Fields, key: &str, name: &str) -> Result<SolidNoiseParameters, FileError> {
     let material = SolidMaterial::from_name(name).ok_or_else(|| {
-        let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
+        let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ").replace('_', "-");
         fields.refuse(key, format!("\"{name}\" is unknown"), format!("must be one of: {known}"))
     })?;
     Ok(material.parameters())

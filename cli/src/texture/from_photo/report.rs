@@ -184,6 +184,10 @@ impl Report {
             crate::plot::quantity(self.micro_relief_m, "m"),
             self.roughness,
         );
+        text.push_str(
+            "; overview.png: above the photograph, its pattern and what differs from it, below the heights, the heights lit \
+             from above left and the roughness",
+        );
         if self.reduced_by > 1 {
             let _ =
                 write!(text, "\nreduced by {} to {} × {} texels", self.reduced_by, self.width, self.height);

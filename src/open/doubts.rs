@@ -1,0 +1,82 @@
+//! Numbers of actuators that are accepted and hardly meant: a unit off by a thousand, told with what
+//! was likely meant.
+
+use crate::model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
+
+/// Longest displacement that an actuator has, m.
+const LONGEST_M: f64 = 0.01;
+/// Most metres at sample value 1: a file of metres has 1.
+const MOST_FULL_SCALE_M: f64 = 1.0;
+
+/// One line for each number in doubt.
+pub(super) fn doubts(actuators: &[ActuatorSettings], full_scale: impl Iterator<Item = f64>) -> Vec<String> {
+    let mut told = Vec::new();
+    for (channel, (settings, full_scale)) in actuators.iter().zip(full_scale).enumerate() {
+        if settings.output != Quantity::Acceleration {
+            told.extend(long(&format!("actuator {channel}: full_scale"), full_scale, MOST_FULL_SCALE_M));
+        }
+        // The limits of the device that is equalised are told once.
+        let other = settings.limit.filter(|limit| settings.equalise.as_ref() != Some(limit));
+        for (key, device) in [("equalise", settings.equalise), ("limit", other)] {
+            told.extend(
+                device.iter().flat_map(|device| of_device(&format!("actuator {channel}: {key}"), device)),
+            );
+        }
+    }
+    told
+}
+
+fn of_device(at: &str, device: &DeviceProfile) -> Vec<String> {
+    let DeviceProfile { resonance_hz, band_hz: [low, high], .. } = *device;
+    let lengths = [("felt_at_resonance_m", device.felt_at_resonance_m), ("excursion_m", device.excursion_m)];
+    let mut told: Vec<String> = lengths
+        .iter()
+        .filter_map(|(key, metres)| long(&format!("{at}: {key}"), *metres, LONGEST_M))
+        .collect();
+    if !(0.2 * low..=5.0 * high).contains(&resonance_hz) {
+        let kilohertz = (low..=high).contains(&(1e3 * resonance_hz));
+        let right = if kilohertz {
+            format!("if this is kilohertz, write {}", 1e3 * resonance_hz)
+        } else {
+            "check its unit, hertz".to_owned()
+        };
+        told.push(format!(
+            "{at}: resonance_hz = {resonance_hz} is far outside its band_hz, {low} to {high}; {right}"
+        ));
+    }
+    told
+}
+
+/// A displacement beyond what is usual.
+fn long(at: &str, metres: f64, usual_m: f64) -> Option<String> {
+    let (unit, meant) =
+        if metres <= 1.0 { ("millimetres", metres / 1e3) } else { ("micrometres", metres / 1e6) };
+    (metres > usual_m).then(|| {
+        format!("{at} = {metres} is metres, beyond the usual {usual_m}; if these are {unit}, write {meant:e}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::actuator_profile::ActuatorPreset;
+
+    #[test]
+    fn micrometres_and_kilohertz_of_a_device_are_told_and_shipped_profiles_are_not() {
+        for name in ActuatorPreset::names().split(", ") {
+            assert_eq!(of_device("", &ActuatorPreset::by_name(name).unwrap().profile), [""; 0], "{name}");
+        }
+        let slip = DeviceProfile { resonance_hz: 0.17, excursion_m: 13.0, ..DeviceProfile::LRA_170 };
+        let settings = ActuatorSettings { limit: Some(slip), ..ActuatorSettings::default() };
+        let told = doubts(&[settings], [100.0].into_iter()).join("\n");
+        for part in [
+            "actuator 0: full_scale = 100 is metres, beyond the usual 1; if these are micrometres, write 1e-4",
+            "actuator 0: limit: excursion_m = 13 is metres",
+            "write 1.3e-5",
+            "actuator 0: limit: resonance_hz = 0.17 is far outside its band_hz, 60 to 400; if this is kilohertz, write 170",
+        ] {
+            assert!(told.contains(part), "{told}\nlacks {part}");
+        }
+        assert_eq!(doubts(&[ActuatorSettings::default()], [1.0].into_iter()), [""; 0]);
+    }
+}
