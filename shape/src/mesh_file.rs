@@ -61,7 +61,7 @@ fn parse_named(path: &Path, bytes: &[u8]) -> Result<(Mesh, Names), ShapeError> {
     mesh.map(|(mesh, names)| (mesh.used(), names)).map_err(|error| error.within(&path.display().to_string()))
 }
 
-/// What a download left in the mesh's place.
+/// Download's leftover in the mesh's place.
 fn placeholder(bytes: &[u8]) -> Option<&'static str> {
     let begins = String::from_utf8_lossy(&bytes[..bytes.len().min(64)]).trim_start().to_lowercase();
     if begins.starts_with("version https://git-lfs") {

@@ -29,7 +29,6 @@ use crate::audio::shared::{Shared, Stretch};
 use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
-use crate::prepared::area::Nestling;
 use crate::prepared::overlay::TileCells;
 use crate::prepared::tip_force::TipForce;
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
@@ -82,7 +81,6 @@ pub(crate) struct Voice {
     cells: TileCells,
     between: Between,
     rolling: Rolling,
-    nestling: Nestling,
     tip: TipForce,
     pad: Pad,
     drag: Drag,
@@ -123,7 +121,6 @@ impl Voice {
             cells: TileCells::default(),
             between: Between::default(),
             rolling: Rolling::default(),
-            nestling: Nestling::default(),
             tip: TipForce::default(),
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
@@ -218,8 +215,7 @@ impl Voice {
         }
         let PathPoint { velocity_m_s, normal_force_n, .. } = self.path.last;
         let room = &mut scratch.profile.rough;
-        let loudness = self.loudness(shared, position, seat, room);
-        self.exciters.press(loudness, velocity_m_s);
+        self.exciters.press(self.loudness(shared, position, seat, room), velocity_m_s);
         if self.rolling.rolls() {
             self.roll(shared, seat, room, Rolling::turn);
         }

@@ -91,10 +91,11 @@ const TIME_RATIO: f64 = 2.0;
 /// Peak of an impact of 1 N·s on a body, full scale 1, by the logarithm of its contact's duration.
 ///
 /// ```text
-/// peak(τ) ∝ Σ |aᵢ| p(fᵢ τ)      p(x) = max((1 + (1.35 x)⁵)^(−½), min(1, 0.27 / x))
+/// peak(τ) = max(c Σ |aᵢ| p(fᵢ τ), Σ |aᵢ| q(fᵢ τ))      p(x) = (1 + (1.35 x)⁵)^(−½),  q(x) = 0.27 / x above 1
 /// ```
-/// p: envelope of the spectrum of Hertz' pulse (within 4 dB), and the share with which a mode
-/// follows a slow force. aᵢ, fᵢ: modes, and bands at the root of their energy.
+/// p: envelope of the spectrum of Hertz' pulse (within 4 dB); c: that of the reference strike,
+/// whose modes do not peak at once. q: the share with which modes follow a slow force, all at once.
+/// aᵢ, fᵢ: modes, and bands at the root of their energy, which follow nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BlowPeaks([f64; TIMES]);
 
@@ -102,17 +103,26 @@ impl BlowPeaks {
     /// Peaks of nothing that rings.
     const SILENT: Self = Self([0.0; TIMES]);
 
-    /// Peaks of a body, of which the reference strike's is known.
-    fn of(body: &Body, reference_per_n_s: f64) -> Self {
+    /// Peaks of a body at this gain, of which those of the reference strike are known at a gain of 1.
+    fn of(body: &Body, gain: f64, reference_per_n_s: f64) -> Self {
+        let modes = &body.model.modes;
+        let sum = |share: &dyn Fn(f64) -> f64| -> f64 {
+            modes.iter().map(|mode| mode.amplitude.abs() * share(mode.frequency_hz)).sum()
+        };
         let bands = body.model.diffuse.iter().flat_map(|diffuse| &diffuse.bands);
         let energy = |band: &DiffuseBand| band.parts.iter().map(|part| part.energy).sum::<f64>();
-        let bands = bands.map(|band| (band.centre_hz, energy(band).sqrt()));
-        let modes = body.model.modes.iter().map(|mode| (mode.frequency_hz, mode.amplitude.abs()));
-        let lines: Vec<(f64, f64)> =
-            if body.model.modes.is_empty() { bands.collect() } else { modes.collect() };
-        let peak = |time_s: f64| lines.iter().map(|(hz, a)| a * share(hz * time_s)).sum::<f64>();
-        let unit = reference_per_n_s / peak(reference_time_s(body.material)).max(f64::MIN_POSITIVE);
-        Self(std::array::from_fn(|k| unit * peak(SHORTEST_S * TIME_RATIO.powi(k as i32))))
+        let lines: Vec<(f64, f64)> = bands.map(|band| (band.centre_hz, energy(band).sqrt())).collect();
+        let rung = |time_s: f64| {
+            let share = |hz: f64| spectrum(hz * time_s);
+            if modes.is_empty() { lines.iter().map(|(hz, a)| a * share(*hz)).sum() } else { sum(&share) }
+        };
+        let known: f64 = rung(reference_time_s(body.material));
+        let unit = gain * reference_per_n_s / known.max(f64::MIN_POSITIVE);
+        let pushed = gain / body.model.impulse_n_s;
+        Self(std::array::from_fn(|k| {
+            let time_s = SHORTEST_S * TIME_RATIO.powi(k as i32);
+            f64::max(unit * rung(time_s), pushed * sum(&|hz| followed(hz * time_s)))
+        }))
     }
 
     /// Peak of a pulse.
@@ -125,10 +135,14 @@ impl BlowPeaks {
     }
 }
 
-/// Share of a mode's answer to an impulse that is left of one of this duration, periods of it.
-fn share(periods: f64) -> f64 {
-    let spectrum = (1.0 + libm::pow(1.35 * periods, 5.0)).sqrt().recip();
-    f64::max(spectrum, f64::min(1.0, 0.27 / periods))
+/// Spectrum of a pulse of this duration, periods of a mode, over that of an impulse.
+fn spectrum(periods: f64) -> f64 {
+    (1.0 + libm::pow(1.35 * periods, 5.0)).sqrt().recip()
+}
+
+/// Share of a mode's answer to an impulse with which it follows such a pulse.
+fn followed(periods: f64) -> f64 {
+    if periods > 1.0 { 0.27 / periods } else { 0.0 }
 }
 
 /// Duration of the reference strike on a body of this material, s.
@@ -219,7 +233,7 @@ impl Levels {
         let within = (gain * trial.burst).max(1.0);
         let own = config.levels.factor(1.0, within, &mut self.strikes);
         let strike_gain = body.strike_gain.unwrap_or(own);
-        let blows = BlowPeaks::of(body, gain * strike_gain * trial.struck / STRIKE_N_S);
+        let blows = BlowPeaks::of(body, gain * strike_gain, trial.struck / STRIKE_N_S);
         Ok(BodyLevel { gain, own_gain: reference / found, strike_gain, blows })
     }
 

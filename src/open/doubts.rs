@@ -1,5 +1,5 @@
-//! Numbers of actuators that are accepted and hardly meant: a unit off by a thousand, told with what
-//! was likely meant.
+//! Numbers of actuators that are accepted and hardly meant: a unit off by a thousand, told with
+//! what was likely meant.
 
 use crate::model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
 

@@ -25,43 +25,11 @@ pub(crate) fn loudness(force_n: f64) -> f64 {
     libm::cbrt(within(force_n))
 }
 
-/// Part of its reach that a tip moves before the ground is asked anew.
-const STEP: f64 = 0.125;
-
-/// Loudness where the ground bends over that on a plane, at the place where it was asked last.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Nestling {
-    at_m: [f64; 2],
-    factor: f64,
-}
-
-impl Default for Nestling {
-    /// Asked nowhere.
-    fn default() -> Self {
-        Self { at_m: [f64::NAN; 2], factor: 1.0 }
-    }
-}
-
-impl Nestling {
-    /// The factor at a place; `hollow_m` says how much higher the ground lies at a reach.
-    pub(crate) fn at(
-        &mut self,
-        [u_m, v_m]: [f64; 2],
-        tip_radius_m: f64,
-        hollow_m: impl FnOnce(f64) -> f64,
-    ) -> f64 {
-        let radius_m = if tip_radius_m > 0.0 { tip_radius_m } else { FINGERTIP_RADIUS_M };
-        let reach_m = REACH * radius_m;
-        let away_m = [u_m - self.at_m[0], v_m - self.at_m[1]];
-        if away_m.iter().all(|away_m| away_m.abs() < STEP * reach_m) {
-            return self.factor;
-        }
-        *self = Self { at_m: [u_m, v_m], factor: nestling(radius_m, reach_m, hollow_m) };
-        self.factor
-    }
-}
-
-fn nestling(radius_m: f64, reach_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> f64 {
+/// Loudness where the ground bends over that on a plane; `hollow_m` says how much higher the ground
+/// lies at a reach.
+pub(crate) fn nestling(tip_radius_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> f64 {
+    let radius_m = if tip_radius_m > 0.0 { tip_radius_m } else { FINGERTIP_RADIUS_M };
+    let reach_m = REACH * radius_m;
     let mean_curvature_per_m = 2.0 * hollow_m(reach_m) / (reach_m * reach_m);
     libm::cbrt((1.0 - radius_m * mean_curvature_per_m).clamp(CLOSENESS.0, CLOSENESS.1)).recip()
 }
@@ -75,31 +43,19 @@ mod tests {
         move |reach_m| 0.5 * curvature_per_m * reach_m * reach_m
     }
 
-    fn at(radius_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> f64 {
-        Nestling::default().at([0.0; 2], radius_m, hollow_m)
-    }
-
-    #[test]
-    fn the_ground_is_asked_anew_an_eighth_of_the_reach_further_on() {
-        let mut nestling = Nestling::default();
-        let crest = nestling.at([0.1, 0.2], 8e-3, bent(-500.0));
-        assert_eq!(nestling.at([0.1002, 0.2], 8e-3, bent(0.0)), crest);
-        assert_eq!(nestling.at([0.1002, 0.2003], 8e-3, bent(0.0)), 1.0);
-    }
-
     #[test]
     fn a_plane_changes_nothing_and_a_ball_on_a_ball_of_its_size_halves_the_curvature_s_radius() {
-        assert_eq!(at(2e-3, bent(0.0)), 1.0);
+        assert_eq!(nestling(2e-3, bent(0.0)), 1.0);
         // A crest as sharp as the tip: κ = 2/r, so the area is 2^(−2/3) and the sound 2^(−1/3).
-        assert!((at(2e-3, bent(-500.0)) - 0.5f64.cbrt()).abs() < 1e-12);
+        assert!((nestling(2e-3, bent(-500.0)) - 0.5f64.cbrt()).abs() < 1e-12);
         // A hollow of twice its radius: κ = 1/(2r).
-        assert!((at(2e-3, bent(250.0)) - 2f64.cbrt()).abs() < 1e-12);
+        assert!((nestling(2e-3, bent(250.0)) - 2f64.cbrt()).abs() < 1e-12);
         assert!((loudness(8.0) - 2.0).abs() < 1e-12);
     }
 
     #[test]
     fn the_deeper_the_hollow_the_louder_within_bounds() {
-        let at = |per_m: f64| at(0.0, bent(per_m));
+        let at = |per_m: f64| nestling(0.0, bent(per_m));
         let steps: Vec<f64> = (-200..200).map(|step| at(50.0 * f64::from(step))).collect();
         assert!(steps.windows(2).all(|pair| pair[1] >= pair[0]));
         assert!((steps[0] - 16f64.cbrt().recip()).abs() < 1e-12 && (steps[399] - 4f64.cbrt()).abs() < 1e-12);

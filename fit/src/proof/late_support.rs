@@ -1,9 +1,9 @@
 //! Late support: modes that go on after the recording has gone silent at their frequency.
 //!
-//! A short burst of noise is fitted well by modes of any decay: over 5 ms none of them is known, and
-//! where the body would be too loud its long ones are bent a little for the attack's sake. What the
-//! recording has later tells them apart. With r what the body leaves of the recording from 50 ms
-//! after the strike on, c the amplitude of a mode there and z its pole,
+//! A short burst of noise is fitted well by modes of any decay: over 5 ms none of them is known,
+//! and where the body would be too loud its long ones are bent a little for the attack's sake. What
+//! the recording has later tells them apart. With r what the body leaves of the recording from 50
+//! ms after the strike on, c the amplitude of a mode there and z its pole,
 //!
 //! ```text
 //! p = 2 Σ r[n] z̄ⁿ / Σ |z|²ⁿ        |c + p| < |c| / 2: not supported
@@ -12,11 +12,13 @@
 
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::projection::correlate_values;
+use std::f64::consts::LN_10;
 
-/// Time from the strike on after which the recording is asked, s, and the least part of the mode's
-/// amplitude that is then left for an answer.
+/// Time from the strike on after which the recording is asked, s.
 const LATE_S: f64 = 0.05;
-const LEFT: f64 = 0.1;
+/// Nepers by which a mode that is asked falls at most in the sound: 60 dB. Shorter ones bend as the
+/// attack and the room have it, and are silent in the end.
+const FALLS: f64 = 3.0 * LN_10;
 /// Least part of a mode that the recording has.
 const SUPPORTED: f64 = 0.5;
 
@@ -33,7 +35,7 @@ pub(crate) fn unsupported(partials: &[Partial], residual: &[f64], rate_hz: f64) 
     let found = partials.iter().zip(&late).zip(missing);
     let unsupported = found.filter(|((partial, late), missing)| {
         let missing = missing.conj() * 2.0 / energy(late);
-        late.c.norm() > LEFT * partial.c.norm() && (late.c + missing).norm() < SUPPORTED * late.c.norm()
+        partial.delta * count < FALLS && (late.c + missing).norm() < SUPPORTED * late.c.norm()
     });
     unsupported.map(|((partial, _), _)| *partial).collect()
 }

@@ -7,7 +7,6 @@ use crate::audio::seat::Seat;
 use crate::audio::shared::{Shared, Stretch};
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
-use crate::prepared::area::Nestling;
 use crate::prepared::surface::SurfaceSlot;
 use crate::prepared::tip_force::TipForce;
 use asperity_dsp::actuator::ContactOutputState;
@@ -76,7 +75,6 @@ impl Voice {
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
         self.skin = ContactSkin::default();
-        self.nestling = Nestling::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
         let loudness = self.loudness(shared, position, seat, &mut scratch.profile.rough);

@@ -6,7 +6,7 @@ use super::rolling::Rolling;
 use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Shared, Stretch};
-use crate::prepared::area::loudness;
+use crate::prepared::area::{loudness, nestling};
 use crate::prepared::rolled_over::RolledOver;
 use crate::prepared::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
@@ -29,7 +29,7 @@ impl Voice {
 
     /// Loudness: grows with force and with how closely the tip nestles to the ground.
     pub(super) fn loudness(
-        &mut self,
+        &self,
         shared: &Shared,
         position: u64,
         seat: &mut Seat,
@@ -38,8 +38,7 @@ impl Voice {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let touch = self.touch_at(position);
         let hollow_m = |reach_m| seat.hollow_m(&touch, (reach_m, tip_radius_m), room);
-        let nestles = self.nestling.at(touch.position_m, tip_radius_m, hollow_m);
-        loudness(self.path.last.normal_force_n) * nestles
+        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
     }
 
     /// Hands the ground under its last sample to what rolls.
