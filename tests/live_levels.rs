@@ -430,7 +430,7 @@ fn the_harder_a_blow_the_louder_it_is() {
             (0..12).for_each(|_| played.step(None));
             let loud = rms(&played.audio);
             println!("{shape:?} {impulse_n_s} N·s: {:.1} dB, peak {:.2}", db(loud), peak(&played.audio));
-            assert!(loud > 0.7 * before, "{shape:?}, {impulse_n_s} N·s: {} dB lower", db(before / loud));
+            assert!(loud > 0.6 * before, "{shape:?}, {impulse_n_s} N·s: {} dB lower", db(before / loud));
             before = loud;
         }
     }

@@ -91,11 +91,11 @@ const TIME_RATIO: f64 = 2.0;
 /// Peak of an impact of 1 N·s on a body, full scale 1, by the logarithm of its contact's duration.
 ///
 /// ```text
-/// peak(τ) = max(c Σ |aᵢ| p(fᵢ τ), Σ |aᵢ| q(fᵢ τ))      p(x) = (1 + (1.35 x)⁵)^(−½),  q(x) = 0.27 / x above 1
+/// peak(τ) = max(c Σ |aᵢ| p(fᵢ τ), Σ |aᵢ| q(fᵢ τ))      p(x) = (1 + (1.35 x)⁵)^(−½),  q(x) = 0.13 / x above 1
 /// ```
 /// p: envelope of the spectrum of Hertz' pulse (within 4 dB); c: that of the reference strike,
-/// whose modes do not peak at once. q: the share with which modes follow a slow force, all at once.
-/// aᵢ, fᵢ: modes, and bands at the root of their energy, which follow nothing.
+/// whose modes do not peak at once. q: half the share with which a mode follows a slow force, since
+/// not all push alike. aᵢ, fᵢ: modes, and bands at the root of their energy, which follow nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BlowPeaks([f64; TIMES]);
 
@@ -103,7 +103,7 @@ impl BlowPeaks {
     /// Peaks of nothing that rings.
     const SILENT: Self = Self([0.0; TIMES]);
 
-    /// Peaks of a body at this gain, of which those of the reference strike are known at a gain of 1.
+    /// Peaks of a body at a gain; that of the reference strike is known at a gain of 1.
     fn of(body: &Body, gain: f64, reference_per_n_s: f64) -> Self {
         let modes = &body.model.modes;
         let sum = |share: &dyn Fn(f64) -> f64| -> f64 {
@@ -142,7 +142,7 @@ fn spectrum(periods: f64) -> f64 {
 
 /// Share of a mode's answer to an impulse with which it follows such a pulse.
 fn followed(periods: f64) -> f64 {
-    if periods > 1.0 { 0.27 / periods } else { 0.0 }
+    if periods > 1.0 { 0.13 / periods } else { 0.0 }
 }
 
 /// Duration of the reference strike on a body of this material, s.
