@@ -411,7 +411,7 @@ fn a_surface_that_was_prepared_is_added_with_the_same_level() {
 }
 
 #[test]
-fn the_harder_a_blow_the_louder_it_is() {
+fn what_falls_hard_is_louder_than_a_tap() {
     for (shape, of, size_m) in [
         (Stock::Plate, Material::CERAMIC, 0.14),
         (Stock::Box, Material::SOFTWOOD, 0.4),
@@ -420,7 +420,7 @@ fn the_harder_a_blow_the_louder_it_is() {
         (Stock::Bar, Material::STEEL, 0.3),
         (Stock::Cushion, Material::FOAM, 0.3),
     ] {
-        let mut before = 0.0;
+        let mut tap = 0.0;
         // From 10 g to 100 kg at 1.5 m/s.
         for decade in 0..5 {
             let mut played = Played::new(live(LevelPolicy::Shared));
@@ -430,8 +430,10 @@ fn the_harder_a_blow_the_louder_it_is() {
             (0..12).for_each(|_| played.step(None));
             let loud = rms(&played.audio);
             println!("{shape:?} {impulse_n_s} N·s: {:.1} dB, peak {:.2}", db(loud), peak(&played.audio));
-            assert!(loud > 0.6 * before, "{shape:?}, {impulse_n_s} N·s: {} dB lower", db(before / loud));
-            before = loud;
+            if decade == 0 {
+                tap = loud;
+            }
+            assert!(loud >= tap, "{shape:?}, {impulse_n_s} N·s: {:.1} dB under a tap", db(tap / loud));
         }
     }
 }

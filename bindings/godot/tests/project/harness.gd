@@ -35,6 +35,15 @@ func made(scene_file := "", audio_bus := "Sound", haptic_bus := "Haptics") -> As
 	return world
 
 
+# A world whose levels are what its numbers say: what is felt of two surfaces can be compared.
+func as_given() -> AsperityWorld:
+	var world := made("", "", "")
+	world.levels = "as_given"
+	world.gain = 0.2
+	world.build()
+	return world
+
+
 func gone(world: Node) -> void:
 	world.queue_free()
 	for frame in 20:
@@ -91,7 +100,7 @@ func felt(material: StandardMaterial3D) -> float:
 
 # Mixed by the test, tick by tick: the level is the same under any load.
 func felt_on(surface: AsperitySurface) -> float:
-	var world := made("", "", "")
+	var world := as_given()
 	var sound := world.audio_stream().instantiate_playback()
 	var touch := world.haptic_stream(0, -1).instantiate_playback()
 	var frames := PackedVector2Array()
