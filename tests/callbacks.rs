@@ -58,7 +58,7 @@ impl Game {
         self.report(event);
     }
 
-    /// So many ticks, each with what the game does in it: what is heard and felt.
+    /// Ticks, each with the game's part in it; returns the heard and the felt samples.
     fn run(&mut self, ticks: u32, mut does: impl FnMut(&mut Self, u32)) -> (Vec<f32>, Vec<f32>) {
         let (mut heard, mut felt) = (Vec::new(), Vec::new());
         for tick in 0..ticks {

@@ -2,7 +2,7 @@
 //!
 //! Each section (a choice, `surface`, `body`, `probe`) is read at both ends of its ranges and with
 //! each value of its choices, the other sections at their first; each key of `finger` likewise.
-//! What would be rendered but is hardly meant is a doubt, with the likeliest unit.
+//! Values that can be rendered and are hardly meant are doubts, with the likeliest unit.
 
 use crate::distribution::{ends, ends_of_table};
 use crate::path::Shape;

@@ -108,9 +108,12 @@ fn plain(path: &Path) -> PathBuf {
 
 /// A file that is text.
 pub(crate) fn text(files: &dyn Files, path: &Path) -> io::Result<String> {
-    let text = String::from_utf8(files.read(path)?).map_err(|_| io::ErrorKind::InvalidData)?;
+    let mut text = String::from_utf8(files.read(path)?).map_err(|_| io::ErrorKind::InvalidData)?;
     // A mark of the byte order is no part of the text.
-    Ok(text.strip_prefix('\u{feff}').map_or_else(|| text.clone(), str::to_owned))
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// A channel of an image file.

@@ -27,15 +27,13 @@ pub(crate) fn unsupported(partials: &[Partial], residual: &[f64], rate_hz: f64) 
     let from = ((LATE_S * rate_hz) as usize).min(residual.len() / 2);
     let late: Vec<Partial> = partials.iter().map(|p| p.moved(from as f64)).collect();
     let residual = &residual[from..];
-    let count = residual.len() as f64;
     let missing = correlate_values(residual, &late);
-    let energy = |p: &Partial| {
-        if p.delta * count < 1e-9 { count } else { -(-2.0 * p.delta * count).exp_m1() / (2.0 * p.delta) }
-    };
     let found = partials.iter().zip(&late).zip(missing);
     let unsupported = found.filter(|((partial, late), missing)| {
-        let missing = missing.conj() * 2.0 / energy(late);
-        partial.delta * count < FALLS && (late.c + missing).norm() < SUPPORTED * late.c.norm()
+        // Σ |z|²ⁿ / 2 is the energy of the mode over its amplitude squared.
+        let missing = missing.conj() * late.c.norm_sqr() / late.energy(residual.len());
+        partial.delta * (residual.len() as f64) < FALLS
+            && (late.c + missing).norm() < SUPPORTED * late.c.norm()
     });
     unsupported.map(|((partial, _), _)| *partial).collect()
 }
