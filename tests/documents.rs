@@ -11,7 +11,7 @@ fn root() -> PathBuf {
 fn documents() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         ["README.md", "CONTRIBUTING.md", "examples/README.md"].map(|f| root().join(f)).into();
-    for folder in ["docs", "dsp", "texture", "fit", "fft", "cli", "adapters/pairs", "adapters/rapier"] {
+    for folder in ["docs", "dsp", "texture", "fit", "fft", "cli", "bindings/physics/pairs", "bindings/physics/rapier"] {
         let files = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
         found.extend(files.filter(|path| path.extension().is_some_and(|ending| ending == "md")));
     }

@@ -45,7 +45,7 @@ mod materials;
 mod matte_and_shiny;
 #[path = "../examples/real_input/modal_tables.rs"]
 mod modal_tables;
-#[path = "../fuzz/mutation.rs"]
+#[path = "fuzz/mutation.rs"]
 mod mutation;
 mod one_shots;
 mod only_what_is_needed;
@@ -93,7 +93,7 @@ mod strike_anywhere;
 mod strike_field;
 mod strikes;
 mod swap;
-#[path = "../fuzz/targets.rs"]
+#[path = "fuzz/targets.rs"]
 mod targets;
 mod threads;
 #[path = "../examples/real_input/trajectories.rs"]

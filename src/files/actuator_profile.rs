@@ -81,10 +81,10 @@ struct Written {
 
 /// The profiles that ship with the engine, by name.
 const SHIPPED: [(&str, &str); 4] = [
-    ("lra-170", include_str!("../../presets/actuators/lra-170.toml")),
-    ("console-voice-coil", include_str!("../../presets/actuators/console-voice-coil.toml")),
-    ("haptuator", include_str!("../../presets/actuators/haptuator.toml")),
-    ("vr-controller", include_str!("../../presets/actuators/vr-controller.toml")),
+    ("lra-170", include_str!("actuators/lra-170.toml")),
+    ("console-voice-coil", include_str!("actuators/console-voice-coil.toml")),
+    ("haptuator", include_str!("actuators/haptuator.toml")),
+    ("vr-controller", include_str!("actuators/vr-controller.toml")),
 ];
 
 /// A profile is checked at this rate when it is read, Hz; the engine checks it again at its own.

@@ -6,7 +6,7 @@ use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
 use asperity_texture::solid_materials::SolidMaterial;
 
-#[path = "../../../fuzz/mutation.rs"]
+#[path = "../../../tests/fuzz/mutation.rs"]
 mod mutation;
 
 fn parse(text: &str) -> Result<SceneFile, String> {

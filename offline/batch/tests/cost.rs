@@ -20,7 +20,7 @@ fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() 
     if cfg!(debug_assertions) {
         return println!("skipped: an unoptimised build says nothing about cost");
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/batch/strokes.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/batch/strokes.toml");
     let folder = tempfile::tempdir().unwrap();
     let spec = Spec::load(&path).unwrap();
     drop(DataSet::open(spec.clone(), folder.path()).unwrap());
