@@ -12,7 +12,7 @@ use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
 use asperity_dsp::trajectory::{PathEvent, PathMode, PathPoint, Trajectory, TrajectoryDesign};
-use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
+use asperity_surface::height_field::{HeightField, PathBlock, SurfaceBlock};
 use scenes::{Plan, Running};
 use std::time::Instant;
 

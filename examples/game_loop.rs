@@ -17,15 +17,15 @@
 //! opt-level = 3
 //! [profile.dev.package.asperity-dsp]
 //! opt-level = 3
-//! [profile.dev.package.asperity-texture]
+//! [profile.dev.package.asperity-surface]
 //! opt-level = 3
 //! [profile.dev.package.libm]
 //! opt-level = 3
 //! ```
 
 use asperity::offline::{self, Options};
-use asperity::texture::height_map::HeightMap;
-use asperity::texture::raster::Raster;
+use asperity::surface::height_map::HeightMap;
+use asperity::surface::raster::Raster;
 use asperity::{
     Actuator, AudioBus, Body, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
     Extent, Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,

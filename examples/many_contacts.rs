@@ -11,8 +11,8 @@ use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Renderer, Scene, Surface, SurfaceId,
     Wrap,
 };
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use std::error::Error;
 use std::f64::consts::PI;
 use std::time::Instant;

@@ -7,7 +7,7 @@
 
 use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::{NullSink, Pace};
-use asperity::texture::height_map::HeightMap;
+use asperity::surface::height_map::HeightMap;
 use asperity::{
     Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode, Surface,
 };

@@ -14,8 +14,8 @@ mod surfaces;
 
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::{SolidCut, SolidNoise};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::{SolidCut, SolidNoise};
 use asperity::{ActuatorSettings, Config, Surface};
 use std::collections::HashMap;
 use std::error::Error;

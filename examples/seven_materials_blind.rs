@@ -13,7 +13,7 @@ mod common;
 #[path = "../tests/common/materials.rs"]
 mod materials;
 
-use asperity::texture::solid_materials::SolidMaterial;
+use asperity::surface::solid_materials::SolidMaterial;
 use asperity_dsp::rng::Rng;
 
 const SEEDS: [u64; 8] = [70_001, 70_002, 70_003, 70_004, 70_005, 70_006, 70_007, 70_008];

@@ -13,7 +13,7 @@ mod surfaces;
 
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
-use asperity::texture::sand::{SandDesign, SandSource, Tool};
+use asperity::surface::sand::{SandDesign, SandSource, Tool};
 use asperity::{ActuatorSettings, AudioBus, Config, Surface};
 use std::collections::HashMap;
 use std::error::Error;

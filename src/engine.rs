@@ -12,7 +12,7 @@ use crate::model::error::ConfigError;
 use crate::model::levels::Levels;
 use crate::prepared::probe::{PreparedProbe, remark};
 use crate::trial::TRIALS;
-use asperity_texture::sand::SandWorker;
+use asperity_surface::sand::SandWorker;
 use std::sync::Arc;
 
 /// An engine, built: a half for each thread, and what its parts are called.

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! ```
-//! use asperity::texture::height_map::HeightMap;
+//! use asperity::surface::height_map::HeightMap;
 //! use asperity::{
 //!     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, ModalModel, Mode, Surface,
 //! };
@@ -45,7 +45,7 @@
 //! | a recorded contact log | [`offline::render`] |
 //! | displacement and roughness maps | [`Surface::from_maps`], [`Surface::from_displacement`] |
 //! | nothing recorded yet | [`Body::stock`], [`Material::PRESETS`], [`Surface::flat`] |
-//! | a surface of your own | [`texture::height_field::HeightField`] |
+//! | a surface of your own | [`surface::height_field::HeightField`] |
 //! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
 //! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
@@ -58,7 +58,8 @@
 //! | crate | holds |
 //! |---|---|
 //! | [`dsp`] | kernels: what happens to one sample |
-//! | [`texture`] | surfaces: sources sampled in real time, tools behind a feature |
+//! | [`surface`] | surfaces: sources sampled in real time |
+//! | `asperity-pictures` | surfaces from photographs and normal maps, metamers |
 //! | `asperity` | scenes, events, the two halves, files, offline renders, sound cards |
 //! | `asperity-fit` | a recorded hit becomes modes |
 //! | `asperity-rapier` | contacts of a physics engine as events |
@@ -151,7 +152,7 @@ pub use asperity_dsp::simd::Isa;
 pub use asperity_dsp::stick_slip::Friction;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.
-pub use asperity_texture as texture;
-pub use asperity_texture::height_map::Extent;
-pub use asperity_texture::tip_law::TipLaw;
-pub use asperity_texture::wrap::Wrap;
+pub use asperity_surface as surface;
+pub use asperity_surface::height_map::Extent;
+pub use asperity_surface::tip_law::TipLaw;
+pub use asperity_surface::wrap::Wrap;

@@ -1,6 +1,8 @@
 //! Rendering a contact log without a device: the same two halves, the same events, to memory or
 //! WAV.
 
+pub mod silence;
+
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::{ContactLog, LogError, LogEvent, LogLine, Names};
 use crate::files::wav::write_wav;
@@ -12,7 +14,7 @@ use crate::made::edit::Edits;
 use crate::model::error::ReportError;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
-use asperity_texture::sand::{SandFigures, SandPicture};
+use asperity_surface::sand::{SandFigures, SandPicture};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Duration;

@@ -19,7 +19,7 @@ use crate::prepared::probe::remark;
 use asperity_dsp::micro_contact::{Integrator, MicroContact};
 use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
-use asperity_texture::raster::Raster;
+use asperity_surface::raster::Raster;
 pub use change::Changes;
 use levels::Levels;
 pub use parts::ReadSurface;

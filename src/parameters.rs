@@ -8,7 +8,7 @@
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use asperity_dsp::limits::{self, Range};
 use asperity_dsp::micro_contact as contact;
-use asperity_texture::sand::SandLaw;
+use asperity_surface::sand::SandLaw;
 
 /// Moment at which a new value is heard and felt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

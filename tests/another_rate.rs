@@ -3,9 +3,9 @@
 
 use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::NullSink;
-use asperity::texture::height_map::HeightMap;
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::{SandDesign, SandSource};
+use asperity::surface::height_map::HeightMap;
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::{
     Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact,
     ModalModel, Mode, Renderer, Scene, Surface, SurfaceId, Touching, probe_by_name,

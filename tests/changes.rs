@@ -5,15 +5,15 @@ use crate::common;
 use crate::sliding;
 
 use asperity::Surface;
-use asperity::texture::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
-use asperity::texture::combine::{BandWeights, CrossfadeTo, ScaleTo};
-use asperity::texture::height_field::HeightField;
-use asperity::texture::height_map::{Extent, HeightMap};
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::{Layer, SandDesign, SandLaw, SandSource};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
-use asperity::texture::wrap::Wrap;
+use asperity::surface::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
+use asperity::surface::combine::{BandWeights, CrossfadeTo, ScaleTo};
+use asperity::surface::height_field::HeightField;
+use asperity::surface::height_map::{Extent, HeightMap};
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::{Layer, SandDesign, SandLaw, SandSource};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
+use asperity::surface::wrap::Wrap;
 use common::SIDE_M;
 use sliding::{Stroke, assert_no_step};
 
@@ -42,7 +42,7 @@ fn changed<C: Copy + Send + Sync + 'static>(what: &str, surface: Surface, change
 #[test]
 fn every_parameter_of_solid_noise() {
     let start = SolidMaterial::RoughGlass.parameters();
-    let with = |spoil: fn(&mut asperity::texture::solid_noise::SolidNoiseParameters)| {
+    let with = |spoil: fn(&mut asperity::surface::solid_noise::SolidNoiseParameters)| {
         let mut parameters = start;
         spoil(&mut parameters);
         parameters

@@ -5,8 +5,8 @@ use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::{Options, Render};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
 use asperity::{Config, PROBE_PRESETS, Surface, probe_by_name};
 use common::strokes::{power, third_octaves_db};
 use common::{SIDE_M, grating, plate, render, rms, stroke};

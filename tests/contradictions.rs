@@ -364,7 +364,7 @@ fn measured(rows: impl Iterator<Item = (f64, f64, [f64; 2], [f64; 2])>) -> Strok
 
 #[test]
 fn measured_trajectories_are_right_and_in_millimetres_they_are_not() {
-    let Some(corpus) = asperity_measure::corpus::corpus("haptics") else { return };
+    let Some(corpus) = asperity_evidence::corpus::corpus("haptics") else { return };
     let text = |name: &str| std::fs::read_to_string(corpus.join(name)).unwrap();
     // Cubes that are tossed and slide, positions and velocities as a tracker measured them.
     let tosses = table(&text("cube_tosses_148hz.csv"));

@@ -10,8 +10,8 @@ use crate::common;
 use asperity::{Extent, Quantity, Surface, Wrap};
 use asperity_dsp::rng::Rng;
 use asperity_fft::{FftPlanner, num_complex::Complex};
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use common::plate;
 use common::strokes::{
     brownian, exponents, map, power, relief, rms_and_centroid, take, take_over, third_octaves_db,

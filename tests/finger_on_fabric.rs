@@ -7,7 +7,7 @@
 use crate::common;
 
 use asperity::{Quantity, Surface};
-use asperity_texture::raster::Raster;
+use asperity_surface::raster::Raster;
 use common::strokes::{brownian, exponents, map, power, relief, rms_and_centroid, take, third_octaves_db};
 use std::f64::consts::TAU;
 

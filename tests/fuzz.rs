@@ -6,8 +6,8 @@ use crate::mutation;
 use crate::targets;
 
 use asperity_dsp::rng::Rng;
-use asperity_texture::image_io;
-use asperity_texture::raster::Raster;
+use asperity_surface::image_io;
+use asperity_surface::raster::Raster;
 use mutation::drive;
 
 #[test]

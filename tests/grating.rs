@@ -3,7 +3,7 @@
 use crate::common;
 
 use asperity::offline::Options;
-use asperity_measure::spectrum::strongest_bin;
+use asperity_evidence::spectrum::strongest_bin;
 use common::{grating, render, si_config, stroke};
 
 #[test]

@@ -1,5 +1,5 @@
 //! Files import each other in one direction: no circle between files, none between the engine's
-//! folders.
+//! folders, no arrow back between crates.
 //!
 //! A file is a module. What a child imports from its own ancestors does not count: they are one
 //! module in several files. A name that a module hands on (`pub use`) is an import of the file that
@@ -132,7 +132,7 @@ fn read(folder: &str) -> BTreeMap<Module, String> {
 
 #[test]
 fn no_file_imports_what_imports_it() {
-    for folder in ["src", "dsp/src", "texture/src"] {
+    for folder in ["src", "dsp/src", "surface/src"] {
         let graph = imports(&read(folder));
         let arrows: usize = graph.values().map(BTreeSet::len).sum();
         assert!(arrows > 100, "{folder}: only {arrows} imports were found");
@@ -163,4 +163,58 @@ fn a_circle_through_a_name_that_is_handed_on_is_found() {
     assert_eq!(circle(imports(&circled.clone().into())), ["a", "b", "c"]);
     let [root, a, b, _] = circled;
     assert_eq!(circle(imports(&[root, a, b, file("c", "use std::fmt;")].into())), Vec::<String>::new());
+}
+
+/// Crates that a crate of this folder may be built from.
+const BUILT_FROM: [(&str, &[&str]); 10] = [
+    ("dsp", &[]),
+    ("offline/fft", &[]),
+    ("surface", &["dsp", "fft"]),
+    (".", &["dsp", "surface"]),
+    ("offline/pictures", &["dsp", "fft", "surface"]),
+    ("offline/fit", &["dsp", "fft"]),
+    ("offline/shape", &["dsp", "engine"]),
+    ("offline/ports", &["dsp", "fft"]),
+    ("offline/batch", &["dsp", "engine", "ports"]),
+    ("offline/evidence", &["dsp", "fft", "surface", "pictures", "engine"]),
+];
+
+/// Crates of the repository among the dependencies of a manifest.
+fn dependencies(manifest: &str) -> BTreeSet<String> {
+    let section = manifest.split("[dependencies]\n").nth(1).unwrap_or_default();
+    let lines = section.lines().take_while(|line| !line.starts_with('['));
+    let named = lines.filter_map(|line| line.split(['.', ' ']).next());
+    let own = named.filter_map(|name| match name {
+        "asperity" => Some("engine"),
+        name => name.strip_prefix("asperity-"),
+    });
+    own.map(str::to_owned).collect()
+}
+
+#[test]
+fn no_crate_is_built_from_one_that_stands_above_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (folder, allowed) in BUILT_FROM {
+        let manifest = fs::read_to_string(root.join(folder).join("Cargo.toml")).unwrap();
+        let above: Vec<String> =
+            dependencies(&manifest).into_iter().filter(|name| !allowed.contains(&name.as_str())).collect();
+        assert_eq!(above, Vec::<String>::new(), "{folder}/Cargo.toml");
+    }
+    let planted =
+        "[package]\n[dependencies]\nasperity-cli = { path = \"../cli\" }\nasperity.workspace = true\n";
+    assert_eq!(dependencies(planted), BTreeSet::from(["cli".to_owned(), "engine".to_owned()]));
+}
+
+#[test]
+fn the_repository_has_ten_doors() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = fs::read_dir(root).unwrap().map(|entry| entry.unwrap());
+    let named = folders.filter(|entry| entry.path().is_dir());
+    let doors: BTreeSet<String> = named
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| !name.starts_with('.') && name != "target")
+        .collect();
+    let allowed =
+        ["benches", "bindings", "cli", "docs", "dsp", "examples", "offline", "src", "surface", "tests"];
+    assert_eq!(doors, allowed.map(str::to_owned).into());
 }

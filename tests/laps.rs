@@ -5,13 +5,13 @@ use crate::common;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
-use asperity_texture::combine::Sum;
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::lattice::Lattice;
-use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandSource};
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::SolidNoise;
+use asperity_surface::combine::Sum;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::lattice::Lattice;
+use asperity_surface::raster::Raster;
+use asperity_surface::sand::{SandDesign, SandSource};
+use asperity_surface::solid_materials::SolidMaterial;
+use asperity_surface::solid_noise::SolidNoise;
 use common::{SIDE_M, peak, plate, render_tapped, si_config};
 
 /// A lap takes 1.4 s: 61 740 samples, 84 reports.
@@ -65,7 +65,7 @@ fn raster() -> Raster {
     Raster { width: 128, height: 128, values: (0..128 * 128).map(height).collect() }
 }
 
-fn surface(source: impl asperity_texture::height_field::HeightField + 'static) -> Surface {
+fn surface(source: impl asperity_surface::height_field::HeightField + 'static) -> Surface {
     Surface::new(source, SIDE_M, SIDE_M).unwrap()
 }
 
@@ -111,7 +111,7 @@ fn sources() -> Vec<Named> {
         all.push((
             name,
             Box::new(move || {
-                let relief = asperity_texture::brownian::BrownianDesign::new(0.5, 1e-4, 7).surface().unwrap();
+                let relief = asperity_surface::brownian::BrownianDesign::new(0.5, 1e-4, 7).surface().unwrap();
                 let extent = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
                 surface(HeightMap::new(&relief, extent, Wrap::Repeat).unwrap())
             }),

@@ -11,7 +11,7 @@ use asperity::offline::{self, Options, Render};
 use asperity::open::Overrides;
 use asperity::open::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE};
 use asperity::{Engine, Material, SilentBecause};
-use asperity_measure::corpus::corpus;
+use asperity_evidence::corpus::corpus;
 use common::{peak, rms};
 use std::path::Path;
 

@@ -8,7 +8,7 @@ use crate::slanting;
 use asperity::files::Memory;
 use asperity::files::contact_log::ContactLog;
 use asperity::offline::Render;
-use asperity_observer::constants::{LISTENING_PA, hearing_threshold_db, touch_threshold_m};
+use asperity_evidence::observer::constants::{LISTENING_PA, hearing_threshold_db, touch_threshold_m};
 use common::peak;
 use common::strokes::{power, third_octaves_db};
 use slanting::{ceramic_scene, grounds, open, slanting_stroke};

@@ -1,13 +1,13 @@
 //! Many fingers: the engine tells every source its rate and its contacts, so that nobody feels
 //! nothing because a number was not passed on.
 
-use asperity::texture::combine::Crossfade;
-use asperity::texture::height_field::{HeightField, PathBlock, Setup, SurfaceBlock};
-use asperity::texture::height_map::HeightMap;
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::{SandDesign, SandSource};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
+use asperity::surface::combine::Crossfade;
+use asperity::surface::height_field::{HeightField, PathBlock, Setup, SurfaceBlock};
+use asperity::surface::height_map::HeightMap;
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::{SandDesign, SandSource};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
 use asperity::{
     Actuator, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Extent, Surface, Tap,
     Wrap,
@@ -73,7 +73,7 @@ fn sand() -> Surface {
 
 #[cfg(feature = "brownian")]
 fn brownian_path() -> Surface {
-    use asperity::texture::brownian::{BrownianDesign, rendering::BrownianPath};
+    use asperity::surface::brownian::{BrownianDesign, rendering::BrownianPath};
     let heights_m = BrownianDesign::new(0.5, 1e-4, 3).path().unwrap();
     Surface::new(BrownianPath::new(&heights_m, 1e-4, None).unwrap(), SIDE_M, SIDE_M).unwrap()
 }

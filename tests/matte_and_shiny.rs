@@ -5,8 +5,8 @@ use crate::common;
 
 use asperity::offline::Options;
 use asperity::{ActuatorSettings, Config, ContactBlock, Quantity, Tap};
-use asperity_measure::spectrum;
-use asperity_observer::constants::touch_threshold_m;
+use asperity_evidence::observer::constants::touch_threshold_m;
+use asperity_evidence::spectrum;
 use common::{SIDE_M, plate, render, render_tapped, si_config, stroke};
 
 /// Power from 10 Hz to 1 kHz, each bin weighed.

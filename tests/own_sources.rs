@@ -2,13 +2,13 @@
 
 use crate::common;
 
-use asperity::texture::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
-use asperity::texture::height_field::{
+use asperity::surface::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
+use asperity::surface::height_field::{
     Beyond, HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, TouchKind,
     WavelengthBand,
 };
-use asperity::texture::height_map::{Extent, HeightMap};
-use asperity::texture::tiled::Tiled;
+use asperity::surface::height_map::{Extent, HeightMap};
+use asperity::surface::tiled::Tiled;
 use asperity::{
     Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
     Surface, TipLaw,
@@ -100,9 +100,9 @@ fn plane() -> Box<dyn HeightField> {
 
 /// A mask that is half of the one and half of the other.
 fn half() -> Box<dyn HeightField> {
-    let raster = asperity::texture::raster::Raster::constant(1, 1, 0.5);
+    let raster = asperity::surface::raster::Raster::constant(1, 1, 0.5);
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
-    Box::new(HeightMap::new(&raster, extent, asperity::texture::wrap::Wrap::Repeat).unwrap())
+    Box::new(HeightMap::new(&raster, extent, asperity::surface::wrap::Wrap::Repeat).unwrap())
 }
 
 type Wrap = fn(Box<dyn HeightField>) -> Box<dyn HeightField>;
@@ -124,7 +124,7 @@ fn wrappers() -> Vec<(&'static str, Wrap)> {
         }),
         #[cfg(feature = "brownian")]
         ("under a Brownian force", |own| {
-            use asperity::texture::brownian::rendering::{BrownianForce, BrownianSurface, Rendering};
+            use asperity::surface::brownian::rendering::{BrownianForce, BrownianSurface, Rendering};
             let force = BrownianForce::surface(Rendering::Lateral, 1e-3).unwrap();
             Box::new(BrownianSurface::new(own, force))
         }),

@@ -198,7 +198,7 @@ fn what_is_not_written_is_as_the_list_says() {
     let file = SceneFile::parse(&text, Path::new("scene.toml")).unwrap();
     let Source::Sand(sand) = &file.surfaces[0].source else { panic!("not sand") };
     let (law, design) = (&sand.design.law, &sand.design);
-    let asperity::texture::sand::Tool::Sphere { radius_m } = design.tool else { panic!("not a sphere") };
+    let asperity::surface::sand::Tool::Sphere { radius_m } = design.tool else { panic!("not a sphere") };
     let config = asperity::Config::default();
     let actuator = file.actuators[0].settings;
     let text = format!("{SURFACE}width_m = 1.0\nheight_m = 1.0\nexcitation = [\"friction\"]\n");

@@ -6,7 +6,7 @@ use crate::counting;
 
 use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet, Pcm, Picture};
 use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};
-use asperity::texture::sand::{SandDesign, SandSource};
+use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::{
     Actuator, ActuatorSettings, AddError, AudioBus, Body, Config, ContactBlock, ContactEvent, ContactId,
     ContactSample, Engine, Quantity, Renderer, Scene, Surface, SurfaceId, Tap, Touching,

@@ -8,8 +8,8 @@ use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine}
 use asperity::offline::Options;
 use asperity::{Config, ContactBlock, Extent, Probe, Surface, Tap, Wrap};
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use common::{SIDE_M, render_tapped};
 use std::f64::consts::TAU;
 

@@ -25,8 +25,8 @@ fn file() -> SceneFile {
 fn bumps(names: &Names) -> Surface {
     let extent = Extent { width_m: 0.1, height_m: 0.1, relief_m: 2e-5 };
     let values = (0..64 * 64).map(|i| 0.5 + 0.5 * (f64::from(i) * 0.9).sin()).collect();
-    let raster = asperity::texture::raster::Raster { width: 64, height: 64, values };
-    let map = asperity::texture::height_map::HeightMap::new(&raster, extent, asperity::Wrap::Repeat).unwrap();
+    let raster = asperity::surface::raster::Raster { width: 64, height: 64, values };
+    let map = asperity::surface::height_map::HeightMap::new(&raster, extent, asperity::Wrap::Repeat).unwrap();
     Surface::new(map, 0.1, 0.1).unwrap().on(names.bodies["bell"])
 }
 

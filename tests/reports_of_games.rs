@@ -8,8 +8,8 @@ use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine}
 use asperity::offline::{Options, Render};
 use asperity::{Config, ContactBlock, Extent, Probe, SilentBecause, Surface, Tap, Wrap, probe_by_name};
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use common::{SIDE_M, peak, plate, render_tapped, si_config, stroke};
 
 const SPEED_M_S: f64 = 0.1;

@@ -8,8 +8,8 @@ use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Isa, ModalModel, Mode,
     Surface, Wrap,
 };
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 
 const SIDE_M: f64 = 0.1;
 

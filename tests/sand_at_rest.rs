@@ -4,7 +4,7 @@ use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
-use asperity::texture::sand::{SandDesign, SandLaw, SandSource};
+use asperity::surface::sand::{SandDesign, SandLaw, SandSource};
 use asperity::{ContactBlock, Surface, Tap};
 use common::{render_tapped, si_config};
 

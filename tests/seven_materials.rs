@@ -5,7 +5,7 @@
 #[path = "common/materials.rs"]
 mod materials;
 
-use asperity::texture::solid_materials::SolidMaterial;
+use asperity::surface::solid_materials::SolidMaterial;
 use asperity_dsp::rng::Rng;
 
 const STROKES: usize = 10;

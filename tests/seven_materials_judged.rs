@@ -8,9 +8,9 @@
 use crate::common;
 
 use asperity::Surface;
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
-use asperity_observer::{Confusion, Judge, Percept, constants};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
+use asperity_evidence::observer::{Confusion, Judge, Percept, constants};
 use common::exploration::percepts;
 use common::{SIDE_M, si_config};
 

@@ -10,7 +10,7 @@
 
 use crate::common;
 
-use asperity_observer::{Confusion, Judge, Percept, constants};
+use asperity_evidence::observer::{Confusion, Judge, Percept, constants};
 use common::exploration::percepts;
 use common::plates::surface;
 use common::si_config;

@@ -5,10 +5,10 @@ use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
-use asperity::texture::footprint::footprint_radius_m;
-use asperity::texture::height_map::HeightMap;
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::{Buried, SandDesign, SandLaw, SandSource};
+use asperity::surface::footprint::footprint_radius_m;
+use asperity::surface::height_map::HeightMap;
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::{Buried, SandDesign, SandLaw, SandSource};
 use asperity::{Config, ContactBlock, Extent, Probe, Surface, Tap, TipLaw, Wrap};
 use common::{render_tapped, si_config};
 

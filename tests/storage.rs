@@ -4,7 +4,7 @@ use asperity::files::contact_log::ContactLog;
 use asperity::files::contact_log::{LogEvent, LogLine};
 use asperity::files::{Files, Memory};
 use asperity::offline::{self, Options, Render};
-use asperity::texture::picture::{Picture, Samples};
+use asperity::surface::picture::{Picture, Samples};
 use asperity::{ContactSample, Engine};
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -91,7 +91,7 @@ fn decoded_pictures_give_the_bits_of_their_files() {
         )
         .unwrap();
     }
-    let green = bumps().channel(asperity::texture::picture::Channel::G).unwrap().raster.values;
+    let green = bumps().channel(asperity::surface::picture::Channel::G).unwrap().raster.values;
     let texels: Vec<u8> = green.iter().flat_map(|g| [3, (255.0 * g).round() as u8, 9]).collect();
     image::RgbImage::from_raw(64, 64, texels).unwrap().save(folder.join("level/maps/disp.png")).unwrap();
     let rough = image::GrayImage::from_pixel(1, 1, image::Luma([51]));

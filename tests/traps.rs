@@ -21,8 +21,8 @@ use asperity::{
     Config, ContactBlock, Excitation, Extent, Integrator, Material, ModalModel, Mode, PathMode, Probe,
     Surface, Tap, Wrap,
 };
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use common::{SIDE_M, grating, peak, plate, render, render_tapped, rms, si_config, stroke};
 use std::collections::HashMap;
 use std::f64::consts::PI;

@@ -6,8 +6,8 @@ use asperity::{
     Renderer, Scene, Surface, SurfaceId, Wrap,
 };
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 
 /// Side of the surfaces, m.
 pub const SIDE_M: f64 = 0.14;

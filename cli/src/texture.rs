@@ -14,8 +14,8 @@ pub mod solid;
 use crate::error::CliError;
 use crate::progress::Progress;
 use asperity_dsp::DesignError;
-use asperity_texture::image_io::{self, Channel};
-use asperity_texture::raster::Raster;
+use asperity_surface::image_io::{self, Channel};
+use asperity_surface::raster::Raster;
 use clap::Subcommand;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 
 use asperity::Material;
 use asperity_dsp::mode::Mode;
-use asperity_measure::corpus::{corpus, skip};
+use asperity_evidence::corpus::{corpus, skip};
 use asperity_shape::damping_fit::{fit, resonances};
 use std::process::Command;
 

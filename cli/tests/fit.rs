@@ -355,7 +355,7 @@ fn tables_of_other_programs_become_bodies_that_the_engine_reads() {
 
 #[test]
 fn the_modal_tables_of_the_corpus_are_imported() {
-    let Some(corpus) = asperity_measure::corpus::corpus("") else { return };
+    let Some(corpus) = asperity_evidence::corpus::corpus("") else { return };
     let folder = tempfile::tempdir().unwrap();
     for (file, arguments, modes) in [
         ("tdw_ceramic_0_mm.json", &[][..], 349),

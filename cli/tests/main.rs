@@ -27,7 +27,7 @@ mod sounds;
 mod sources;
 mod stock_bodies;
 mod support;
-#[path = "../../texture/tests/surfaces/mod.rs"]
+#[path = "../../offline/pictures/tests/surfaces/mod.rs"]
 mod surfaces;
 mod textures;
 mod trace;

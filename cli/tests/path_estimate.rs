@@ -4,7 +4,7 @@
 
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{PathEvent, PathMode, PathPoint, Trajectory, TrajectoryDesign};
-use asperity_measure::corpus::corpus;
+use asperity_evidence::corpus::corpus;
 
 const RATE_HZ: f64 = 4_800.0;
 /// Samples between two reports: 60 a second.

@@ -7,7 +7,7 @@ use asperity_dsp::masking::{
 };
 use asperity_dsp::modal_bank::shedding_order;
 use asperity_dsp::mode::Mode;
-use asperity_measure::corpus::corpus;
+use asperity_evidence::corpus::corpus;
 use serde_json::Value;
 
 const LOUDEST_DB_SPL: f64 = 70.0;

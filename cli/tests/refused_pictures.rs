@@ -5,8 +5,8 @@ use crate::maps;
 use crate::support;
 use crate::surfaces;
 
-use asperity_texture::image_io::save_gray16;
-use asperity_texture::raster::Raster;
+use asperity_surface::image_io::save_gray16;
+use asperity_surface::raster::Raster;
 use maps::with_maps;
 use support::{asperity, assert_refused, told};
 use surfaces::ground;

@@ -5,9 +5,9 @@ use crate::maps;
 use crate::support;
 use crate::surfaces;
 
-use asperity_texture::image_io::{Channel, load_channel};
-use asperity_texture::metamer::{Feel, MetamerOptions};
-use asperity_texture::raster::Raster;
+use asperity_pictures::metamer::{Feel, MetamerOptions};
+use asperity_surface::image_io::{Channel, load_channel};
+use asperity_surface::raster::Raster;
 use maps::with_maps;
 use serde_json::Value;
 use std::path::Path;

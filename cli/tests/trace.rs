@@ -3,13 +3,13 @@
 
 use crate::support;
 
-use asperity_texture::brownian::BrownianDesign;
-use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch};
-use asperity_texture::lattice::Lattice;
-use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandSource};
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
+use asperity_surface::brownian::BrownianDesign;
+use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch};
+use asperity_surface::lattice::Lattice;
+use asperity_surface::raster::Raster;
+use asperity_surface::sand::{SandDesign, SandSource};
+use asperity_surface::solid_materials::SolidMaterial;
+use asperity_surface::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
 use std::process::Command;
 use support::Scene;
 use support::oracle::{
@@ -66,7 +66,7 @@ fn python(scene: &Scene, arguments: &[&str]) -> Option<serde_json::Value> {
             Some(serde_json::from_slice(&output.stdout).unwrap())
         }
         Err(error) => {
-            asperity_measure::corpus::skip(&format!("no python3 ({error})"));
+            asperity_evidence::corpus::skip(&format!("no python3 ({error})"));
             None
         }
     }

@@ -28,7 +28,7 @@ mod soft;
 mod solid;
 
 use asperity::live::ports::{Force, ForceRow, Of};
-use asperity::texture::sand::{Buried, SandDesign, SandSource};
+use asperity::surface::sand::{Buried, SandDesign, SandSource};
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Scene, Surface, SurfaceId, TipLaw,
 };

@@ -3,8 +3,8 @@
 
 use crate::picture::{Curve, svg};
 use asperity::live::ports::{Force, ForceRow, Of};
-use asperity::texture::sand::simulation::Pose;
-use asperity::texture::sand::{SandDesign, SandLaw, SandSimulation, SandSource};
+use asperity::surface::sand::simulation::Pose;
+use asperity::surface::sand::{SandDesign, SandLaw, SandSimulation, SandSource};
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface};
 use std::error::Error;
 use std::path::Path;

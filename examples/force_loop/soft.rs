@@ -2,13 +2,13 @@
 //! drawn.
 
 use crate::picture::{Curve, svg};
-use asperity::texture::footprint::{footprint_radius_m, sample_under};
-use asperity::texture::height_field::{PathBlock, SurfaceBlock};
-use asperity::texture::height_map::{Extent, HeightMap};
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::simulation::Pose;
-use asperity::texture::sand::{SandDesign, SandSimulation};
-use asperity::texture::wrap::Wrap;
+use asperity::surface::footprint::{footprint_radius_m, sample_under};
+use asperity::surface::height_field::{PathBlock, SurfaceBlock};
+use asperity::surface::height_map::{Extent, HeightMap};
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::simulation::Pose;
+use asperity::surface::sand::{SandDesign, SandSimulation};
+use asperity::surface::wrap::Wrap;
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::path::Path;

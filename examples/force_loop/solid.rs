@@ -2,8 +2,8 @@
 
 use crate::picture::{Curve, svg};
 use asperity::live::ports::{Force, ForcePort, ForceRow, Of};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::{SolidCut, SolidNoise};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::{SolidCut, SolidNoise};
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceFrame};
 use std::error::Error;
 use std::path::Path;

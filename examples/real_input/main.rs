@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let wood = profile::read_npy(&fs::read(corpus.join("textures/profile_bass_wood.npy"))?)?;
     let (raster, wood_relief_m) = profile::raster(&wood);
-    asperity_texture::image_io::save_gray16(folder.join("bass_wood.png"), &raster)?;
+    asperity_surface::image_io::save_gray16(folder.join("bass_wood.png"), &raster)?;
     for ground in scenes::grounds(wood_relief_m) {
         for (pen, samples, velocity) in &pens {
             let stem = format!("{}_{pen}", ground.name);

@@ -1,6 +1,6 @@
 //! A measured height profile as a thin raster that a scene can name.
 
-use asperity_texture::raster::Raster;
+use asperity_surface::raster::Raster;
 
 /// Distance between the samples of the measured profiles, m.
 pub const STEP_M: f64 = 1.394_068e-6;

@@ -14,7 +14,7 @@ use crate::prepared::bank::LONGEST_CONTACT_S;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState};
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::mobility::MobilityState;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Pairs of probe and channel that feel blows at the same time; a further one takes the place of
 /// the one struck first.

@@ -5,7 +5,7 @@ use crate::link::outlet::Outlet;
 use crate::link::ring::Sender;
 use crate::link::tap::{ContactBlock, Tap};
 use crate::model::inner_rate::InnerRate;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// The outlets of all open ports.
 pub(crate) struct Outlets {

@@ -38,7 +38,7 @@ use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::KERNEL_LATENCY;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 use contacts::SilentContact;
 use crew::Crew;
 use outputs::{Bus, HapticChannel, Mix};

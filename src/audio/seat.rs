@@ -13,10 +13,10 @@ use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, Missed, NoisePath, OCTAVES};
-use asperity_texture::height_field::{
+use asperity_surface::height_field::{
     Finish, HeightField, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, hollow_m,
 };
-use asperity_texture::height_map::FRICTION;
+use asperity_surface::height_map::FRICTION;
 use std::any::Any;
 
 /// Time in which one surface becomes another, s.

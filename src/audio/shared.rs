@@ -6,7 +6,7 @@ use crate::prepared::probe::PreparedProbe;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every
 /// rate: its finest octave is whole where its cells pass at 11 kHz and gone where they pass at 22

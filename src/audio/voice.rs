@@ -35,7 +35,7 @@ use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::hertz::FORCE_HISTORY;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, Reaction};
+use asperity_surface::height_field::{MAX_BLOCK, Reaction};
 use between::Between;
 use coupling::AcCoupling;
 use exciters::{Excited, Exciters};

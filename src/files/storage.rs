@@ -4,7 +4,7 @@
 //! (relative to the scene file).
 
 use super::FileError;
-use asperity_texture::picture::{Channel, ChannelImage, MAX_FILE_BYTES, Picture, Problem};
+use asperity_surface::picture::{Channel, ChannelImage, MAX_FILE_BYTES, Picture, Problem};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -15,7 +15,7 @@ use std::path::{Component, Path, PathBuf};
 /// ```
 /// use asperity::Engine;
 /// use asperity::files::Memory;
-/// use asperity::texture::picture::{Picture, Samples};
+/// use asperity::surface::picture::{Picture, Samples};
 ///
 /// let mut files = Memory::new();
 /// files.add("level/scene.toml", *b"[[surface]]\nname = \"wall\"\nwidth_m = 1.0\nheight_m = 1.0\n\
@@ -140,7 +140,7 @@ pub(crate) fn channel(files: &dyn Files, image: &Pixels) -> Result<ChannelImage,
 
 #[cfg(feature = "image")]
 fn decoded(files: &dyn Files, image: &Pixels) -> Result<ChannelImage, Problem> {
-    asperity_texture::image_io::read_map(&files.read(&image.path).map_err(Problem::Io)?, image.channel)
+    asperity_surface::image_io::read_map(&files.read(&image.path).map_err(Problem::Io)?, image.channel)
 }
 
 #[cfg(not(feature = "image"))]

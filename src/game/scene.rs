@@ -39,9 +39,9 @@ use crate::prepared::surface::{SurfaceLevels, SurfaceSlot};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_texture::height_field::Setup;
-use asperity_texture::moving_picture::MovingPicture;
-use asperity_texture::tip_law::TipLaw;
+use asperity_surface::height_field::Setup;
+use asperity_surface::moving_picture::MovingPicture;
+use asperity_surface::tip_law::TipLaw;
 use std::any::Any;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -313,7 +313,7 @@ impl Scene {
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source
     /// takes is said where it is documented: solid noise its parameters, a scaled source a
-    /// [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own whatever type it looks for.
+    /// [`ScaleTo`](asperity_surface::combine::ScaleTo), one of your own whatever type it looks for.
     /// A change that no source of the surface takes (another type, or impossible numbers) is
     /// counted as quarantined. It holds from the stamp of the last event on, after everything that
     /// is queued already: a game that reports ahead gets it then, not now. Recordings hold no such

@@ -8,7 +8,7 @@
 use crate::link::tap::ContactBlock;
 use crate::model::error::AddError;
 use crate::model::id::SurfaceId;
-use asperity_texture::moving_picture::MovingPicture;
+use asperity_surface::moving_picture::MovingPicture;
 use std::sync::Arc;
 
 /// The audio half's end of a port. It must not allocate, lock or wait. It is shown every channel

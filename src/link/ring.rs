@@ -2,7 +2,7 @@
 //!
 //! Neither end ever waits. A full ring hands the item back, so the sender decides what is lost.
 
-use asperity_texture::exclusive::Exclusive;
+use asperity_surface::exclusive::Exclusive;
 
 /// Sending end of a ring.
 pub(crate) struct Sender<T>(Exclusive<rtrb::Producer<T>>);

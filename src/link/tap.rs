@@ -4,9 +4,9 @@
 
 use crate::model::event::{Actuator, ContactId};
 use asperity_dsp::micro_contact::ContactSample as PadSample;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
-/// One contact during up to [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) consecutive
+/// One contact during up to [`MAX_BLOCK`](asperity_surface::height_field::MAX_BLOCK) consecutive
 /// samples; all slices are equally long and describe the same instants.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactBlock<'a> {

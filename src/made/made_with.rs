@@ -3,7 +3,7 @@
 use super::maps::Maps;
 use crate::files::Files;
 use crate::files::scene_file::MakeSource;
-use asperity_texture::sand::SandWorker;
+use asperity_surface::sand::SandWorker;
 use std::cell::RefCell;
 
 /// Makers of every thing of a scene.

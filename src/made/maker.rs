@@ -13,8 +13,8 @@ use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use crate::model::surface::{Roughness, Surface};
-use asperity_texture::height_map::Extent;
-use asperity_texture::wrap::Wrap;
+use asperity_surface::height_map::Extent;
+use asperity_surface::wrap::Wrap;
 use std::path::Path;
 
 impl<'a> Maker<'a> {

@@ -7,10 +7,10 @@
 
 use crate::files::storage::{self, Pixels};
 use crate::files::{FileError, Files};
-use asperity_texture::height_map::{Extent, HeightMap};
-use asperity_texture::picture::ChannelImage;
-use asperity_texture::raster::Raster;
-use asperity_texture::wrap::Wrap;
+use asperity_surface::height_map::{Extent, HeightMap};
+use asperity_surface::picture::ChannelImage;
+use asperity_surface::raster::Raster;
+use asperity_surface::wrap::Wrap;
 use std::cell::RefCell;
 
 /// Conversion of a picture to the values of a map.

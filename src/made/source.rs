@@ -7,17 +7,17 @@ use crate::files::storage::Pixels;
 use crate::files::{FileError, storage};
 use crate::model::frame::SurfaceFrame;
 #[cfg(feature = "brownian")]
-use asperity_texture::brownian::BrownianDesign;
+use asperity_surface::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]
-use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface};
-use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
-use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
-use asperity_texture::height_map::{Extent, HeightMap};
-use asperity_texture::lattice::Lattice;
-use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandSource, Tool};
-use asperity_texture::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
-use asperity_texture::wrap::Wrap;
+use asperity_surface::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface};
+use asperity_surface::combine::{Crossfade, Mask, Scale, Sum};
+use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
+use asperity_surface::height_map::{Extent, HeightMap};
+use asperity_surface::lattice::Lattice;
+use asperity_surface::raster::Raster;
+use asperity_surface::sand::{SandDesign, SandSource, Tool};
+use asperity_surface::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
+use asperity_surface::wrap::Wrap;
 
 /// Points of a graph unless told otherwise.
 #[cfg(feature = "brownian")]

@@ -7,19 +7,19 @@ use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_dsp::stick_slip::Friction;
-use asperity_texture::footprint::{self, footprint_radius_m};
-use asperity_texture::height_field::{
+use asperity_surface::footprint::{self, footprint_radius_m};
+use asperity_surface::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, Touch, TouchKind,
 };
-use asperity_texture::height_map::{Extent, FRICTION, HeightMap, MapError};
+use asperity_surface::height_map::{Extent, FRICTION, HeightMap, MapError};
 #[cfg(feature = "image")]
-use asperity_texture::image_io;
+use asperity_surface::image_io;
 #[cfg(feature = "image")]
-use asperity_texture::picture::Channel;
-use asperity_texture::picture::ImageError;
-use asperity_texture::tiled::Tiled;
-use asperity_texture::tip_law::TipLaw;
-use asperity_texture::wrap::Wrap;
+use asperity_surface::picture::Channel;
+use asperity_surface::picture::ImageError;
+use asperity_surface::tiled::Tiled;
+use asperity_surface::tip_law::TipLaw;
+use asperity_surface::wrap::Wrap;
 use std::any::Any;
 #[cfg(feature = "image")]
 use std::path::Path;
@@ -262,7 +262,7 @@ impl Surface {
     /// ```text
     /// d = C F        a tip that stands d below the untouched surface is carried with d / C
     /// ```
-    /// A probe with a round tip feels the mean of a map under it ([`asperity_texture::footprint`]).
+    /// A probe with a round tip feels the mean of a map under it ([`asperity_surface::footprint`]).
     #[must_use]
     pub fn compliance_m_n(mut self, compliance_m_n: f64) -> Self {
         self.compliance_m_n = compliance_m_n;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! plane       one plane; where the surface stands across it (more than 60°), as by the normal
-//! by normal   the two axes across the one that the normal is nearest to: the faces of a box, a hull, a wall (`texture::triplanar`)
+//! by normal   the two axes across the one that the normal is nearest to: the faces of a box, a hull, a wall (`surface::triplanar`)
 //! sphere      u = R φ / span_u,  v = R θ / span_v        φ: angle about y,  θ: from the pole
 //! cylinder    u = R φ / span_u,  v = −y / span_v; its ends as by the normal
 //! ```
@@ -49,7 +49,7 @@ pub enum UvMapping {
 pub enum UvPlace {
     /// A triangle, exact or tangent to what is round.
     Triangle(UvTriangle),
-    /// By the normal: a [`TriplanarPath`](crate::texture::triplanar::TriplanarPath) of this span
+    /// By the normal: a [`TriplanarPath`](crate::surface::triplanar::TriplanarPath) of this span
     /// keeps its plane from report to report.
     ByNormal {
         /// Metres that uv 1 spans.

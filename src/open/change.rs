@@ -13,7 +13,7 @@ use crate::made::maps::Maps;
 use crate::model::body::Body;
 use crate::model::id::BodyId;
 use crate::model::surface::Surface;
-use asperity_texture::sand::SandWorker;
+use asperity_surface::sand::SandWorker;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 

@@ -12,7 +12,7 @@ use crate::model::body::Body;
 use crate::model::id::BodyId;
 use crate::model::surface::Surface;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::sand::SandWorker;
+use asperity_surface::sand::SandWorker;
 use std::cell::RefCell;
 use std::path::Path;
 use toml::{Table, Value};

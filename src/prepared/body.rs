@@ -20,7 +20,7 @@ use asperity_dsp::modal_bank::{
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Largest number of inputs of the bank at once: the body's positions, its places, and what rubs
 /// it.

@@ -15,7 +15,7 @@ use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSamples, ModeGroup};
 use asperity_dsp::mode::Mode;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Contacts that may slide over a body at the same time, each with gains of its own; more excite it
 /// where its own amplitudes belong.

@@ -21,7 +21,7 @@ use asperity_dsp::modal_bank::{
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
 use asperity_dsp::stick_slip::{Answer, CELL, Coupled, Friction, Sweep, place_speed};
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 const _: () = assert!(CELL == MAX_BLOCK, "a stretch lies within one cell");
 

@@ -11,7 +11,7 @@ use asperity_dsp::diffuse::{
 };
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::simd::Level;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Time in which the bands rise after a strike, in lengths of the burst that it plays: halfway
 /// through its fade both have half of the power.

@@ -16,8 +16,8 @@
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
-use asperity_texture::height_field::MAX_BLOCK;
-use asperity_texture::tiled::{Place, TileAxis};
+use asperity_surface::height_field::MAX_BLOCK;
+use asperity_surface::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
 
 /// Layout of the noise on a surface.

@@ -8,7 +8,7 @@
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::Owner;
 use asperity_dsp::modal_bank::{Input, LANES, LaneGains};
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Time in which gains follow a contact, s: less than the time between two reports of an ordinary
 /// game.

@@ -4,7 +4,7 @@ use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::stroking::Stroking;
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_texture::height_field::Properties;
+use asperity_surface::height_field::Properties;
 
 /// A surface as the audio half owns it: everything a contact needs, designed beforehand.
 pub(crate) struct SurfaceSlot {

@@ -3,8 +3,8 @@
 use crate::model::event::ContactSample;
 use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::answer::{AnswerAt, capped};
-use asperity_texture::height_field::SurfaceBlock;
+use asperity_surface::answer::{AnswerAt, capped};
+use asperity_surface::height_field::SurfaceBlock;
 
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;

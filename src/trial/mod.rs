@@ -13,7 +13,7 @@ use crate::model::levels::{
 use crate::model::material::Material;
 use crate::model::probe::probe_by_name;
 use crate::model::surface::{Roughness, Surface};
-use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
+use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
 use bench::{Bench, Motion, RATE_HZ};
 use std::hash::{DefaultHasher, Hash};
 

@@ -7,8 +7,8 @@ use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine}
 use asperity::offline::{Options, Render};
 use asperity::{Config, Surface};
 use asperity_dsp::rng::Rng;
-use asperity_observer::touch::{Hand, Unit, felt};
-use asperity_observer::{Percept, sound};
+use asperity_evidence::observer::touch::{Hand, Unit, felt};
+use asperity_evidence::observer::{Percept, sound};
 
 /// Strokes across the plate, one along each axis, and where the hand is at a sample.
 pub struct Exploration {

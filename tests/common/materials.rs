@@ -9,10 +9,10 @@ use crate::common::{render, si_config};
 use asperity::Surface;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
 use asperity_dsp::rng::Rng;
-use asperity_measure::spectrum;
+use asperity_evidence::spectrum;
 
 const SIDE_M: f64 = 0.1;
 

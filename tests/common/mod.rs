@@ -10,8 +10,8 @@ use asperity::offline::{self, Options, Render};
 use asperity::{
     ActuatorSettings, ClockMode, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap,
 };
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use std::collections::HashMap;
 
 /// Side of the test surfaces, m.

@@ -3,8 +3,8 @@
 
 use super::SIDE_M;
 use asperity::{Excitation, Extent, Roughness, Surface, Wrap};
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use std::f64::consts::PI;
 
 /// R of printed PLA, as the table of materials and the plates of the demo have it.

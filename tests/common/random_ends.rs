@@ -17,8 +17,8 @@ use asperity::{
     Extent, Integrator, PathMode, Probe, Surface, Tap, Wrap,
 };
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 
 /// What became of a scene.
 #[derive(Debug, Clone, PartialEq)]

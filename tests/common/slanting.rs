@@ -9,7 +9,7 @@ use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine}
 use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options, Render};
 use asperity::open::Overrides;
-use asperity_measure::corpus::corpus;
+use asperity_evidence::corpus::corpus;
 use std::path::Path;
 
 const STROKE_S: f64 = 0.6;

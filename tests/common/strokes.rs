@@ -4,12 +4,12 @@
 use super::{SIDE_M, render, stroke};
 use asperity::offline::{Options, Render};
 use asperity::{ActuatorSettings, Config, Quantity, Surface, Wrap, probe_by_name};
-use asperity_measure::corpus::corpus;
-use asperity_measure::exact_brownian::ExactBrownian;
-use asperity_measure::spectrum;
-use asperity_texture::height_map::{Extent, HeightMap};
-use asperity_texture::image_io::{self, Channel};
-use asperity_texture::raster::Raster;
+use asperity_evidence::corpus::corpus;
+use asperity_evidence::exact_brownian::ExactBrownian;
+use asperity_evidence::spectrum;
+use asperity_surface::height_map::{Extent, HeightMap};
+use asperity_surface::image_io::{self, Channel};
+use asperity_surface::raster::Raster;
 
 /// A map of the corpus, repeated on a square of [`SIDE_M`].
 pub fn map(name: &str, relief_m: f64) -> Option<Surface> {

@@ -3,8 +3,8 @@
 use super::stroke::{Felt, SIDE_M, Stroke, sand};
 use asperity::dsp::rng::Rng;
 use asperity::live::ports::{Force, ForceRow};
-use asperity::texture::raster::Raster;
-use asperity::texture::sand::SandLaw;
+use asperity::surface::raster::Raster;
+use asperity::surface::sand::SandLaw;
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Refusal, Surface, SurfaceFrame,
     TipLaw, Wrap,
@@ -231,7 +231,7 @@ fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
     let mut rng = Rng::new(5);
     let heights = Raster::from_fn(64, 64, |_, _| rng.uniform());
     let cloth = || {
-        let map = asperity::texture::height_map::HeightMap::new(&heights, extent, Wrap::Repeat);
+        let map = asperity::surface::height_map::HeightMap::new(&heights, extent, Wrap::Repeat);
         Surface::from_map(map.unwrap()).unwrap().friction(0.0)
     };
     let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.3 };

@@ -1,8 +1,8 @@
 //! The documents' laws at the ticks of a device, at every rate, and solids that are one.
 
 use super::stroke::{SIDE_M, Stroke, block_of};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::{SolidCut, SolidNoise};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::{SolidCut, SolidNoise};
 use asperity::{ContactSample, Surface, SurfaceFrame};
 use std::collections::HashMap;
 

@@ -2,7 +2,7 @@
 
 use super::stroke::{Felt, SIDE_M, block_of};
 use asperity::live::ports::{Force, ForceRow, Of};
-use asperity::texture::solid_materials::SolidMaterial;
+use asperity::surface::solid_materials::SolidMaterial;
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceId};
 
 #[test]

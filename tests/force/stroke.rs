@@ -1,9 +1,9 @@
 //! Strokes whose forces are told at the rate of a device.
 
 use asperity::live::ports::{ForceRow, ForceRows, Of};
-use asperity::texture::sand::{SandDesign, SandLaw, SandSource};
-use asperity::texture::solid_materials::SolidMaterial;
-use asperity::texture::solid_noise::SolidNoise;
+use asperity::surface::sand::{SandDesign, SandLaw, SandSource};
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity::surface::solid_noise::SolidNoise;
 use asperity::{
     Actuator, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Surface, Tap,
 };

@@ -5,9 +5,9 @@
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{Config, Extent, ModalModel, Surface, Wrap};
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::image_io::{self, Channel};
-use asperity_texture::raster::Raster;
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::image_io::{self, Channel};
+use asperity_surface::raster::Raster;
 use std::collections::HashMap;
 
 /// Longest log that is rendered, s.

@@ -5,7 +5,7 @@ use crate::image::{asp_image, picture};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use asperity::files::{Disk, Files, Memory};
-use asperity::texture::picture::Picture;
+use asperity::surface::picture::Picture;
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::ffi::{CString, c_char, c_void};

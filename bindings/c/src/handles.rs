@@ -5,7 +5,7 @@ use crate::handle::Table;
 use crate::playing::Player;
 use asperity::files::contact_log::Names;
 use asperity::live::ports::{ForcePort, LevelsPort, PcmPort, PointsPort};
-use asperity::texture::sand::SandThread;
+use asperity::surface::sand::SandThread;
 use asperity::{Renderer, Scene, SurfaceId, Tip};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

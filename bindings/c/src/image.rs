@@ -2,7 +2,7 @@
 
 use crate::entry::array;
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
-use asperity::texture::picture::{MAX_SIDE, MAX_TEXELS, Picture, Samples};
+use asperity::surface::picture::{MAX_SIDE, MAX_TEXELS, Picture, Samples};
 use std::ffi::c_void;
 
 /// Samples are 0 to 255.

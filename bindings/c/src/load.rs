@@ -9,7 +9,7 @@ use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_REFUSED, ASP_UNKNOWN, Failur
 use crate::text;
 use asperity::files::scene_file::SceneFile;
 use asperity::open::Overrides;
-use asperity::texture::sand::SandWorker;
+use asperity::surface::sand::SandWorker;
 use asperity::{ClockMode, Engine};
 use std::ffi::c_char;
 use std::path::Path;

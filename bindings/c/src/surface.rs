@@ -9,7 +9,7 @@ use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_REFUSED, Failure};
 use crate::text;
 use asperity::open::{Overrides, ReadSurface};
-use asperity::texture::sand::SandWorker;
+use asperity::surface::sand::SandWorker;
 use asperity::{BodyId, Surface, SurfaceId};
 use std::ffi::c_char;
 use std::path::Path;

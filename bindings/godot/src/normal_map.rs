@@ -5,9 +5,9 @@
 //! ```
 
 use crate::picture;
-use asperity_texture::normal_map::{NormalMapOptions, heights_from_normals};
-use asperity_texture::picture::Channel;
-use asperity_texture::raster::Raster;
+use asperity_pictures::normal_map::{NormalMapOptions, heights_from_normals};
+use asperity_surface::picture::Channel;
+use asperity_surface::raster::Raster;
 use godot::classes::image::Format;
 use godot::classes::{Image, ImageTexture, Texture2D};
 use godot::prelude::*;

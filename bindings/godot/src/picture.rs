@@ -1,6 +1,6 @@
 //! Picture: a texture's samples, as the engine takes them.
 
-use asperity::texture::picture::{Picture, Samples};
+use asperity::surface::picture::{Picture, Samples};
 use godot::classes::Texture2D;
 use godot::classes::image::Format;
 use godot::global::Error;

@@ -3,7 +3,7 @@
 
 use crate::picture;
 use asperity::files::{Files, Memory};
-use asperity::texture::picture::Picture;
+use asperity::surface::picture::Picture;
 use godot::classes::{FileAccess, ResourceLoader, Texture2D};
 use godot::global::Error;
 use godot::prelude::*;

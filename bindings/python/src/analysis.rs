@@ -3,12 +3,12 @@
 use crate::error::{refused, refused_at};
 use crate::interrupt::Pulse;
 use crate::pictures::{array, raster};
-use asperity_texture::fractal_dimension::{Condition, fractal_dimension};
-use asperity_texture::gradient_field::Derivative;
-use asperity_texture::image_io::{Channel, load_channel};
-use asperity_texture::metamer::MetamerOptions;
-use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
-use asperity_texture::symmetry::{averaged_cell, find_frieze, find_lattice, wallpaper_group};
+use asperity_pictures::fractal_dimension::{Condition, fractal_dimension};
+use asperity_pictures::gradient_field::Derivative;
+use asperity_pictures::metamer::MetamerOptions;
+use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
+use asperity_pictures::symmetry::{averaged_cell, find_frieze, find_lattice, wallpaper_group};
+use asperity_surface::image_io::{Channel, load_channel};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -118,11 +118,11 @@ pub fn metamer<'py>(
     let (look, feel) = (raster(&look)?, raster(&feel)?);
     let mut options = MetamerOptions::default();
     if let Some(passes) = iterations {
-        options.method = asperity_texture::metamer::Method::Iterated(passes);
+        options.method = asperity_pictures::metamer::Method::Iterated(passes);
     }
     let pulse = Pulse::new(progress);
     let made = py
-        .detach(|| pulse.run(|tell| asperity_texture::metamer::metamer(&look, &feel, &options, tell)))?
+        .detach(|| pulse.run(|tell| asperity_pictures::metamer::metamer(&look, &feel, &options, tell)))?
         .map_err(refused)?;
     let told = PyDict::new(py);
     told.set_item("mean_before", made.before.mean)?;

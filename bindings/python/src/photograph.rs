@@ -3,11 +3,11 @@
 use crate::error::{refused, refused_at};
 use crate::interrupt::Pulse;
 use crate::pictures::{array, raster};
-use asperity_texture::from_photo::{DECIDED, PhotoOptions, PhotoSurface, reduced, surface_from_photo};
-use asperity_texture::image_io::load_photograph;
-use asperity_texture::light::Light;
-use asperity_texture::shape_from_shading::{Method, STEPS};
-use asperity_tools::compare::{Comparison, STROKES, Table, all_like_the_first};
+use asperity_evidence::compare::{Comparison, STROKES, Table, all_like_the_first};
+use asperity_pictures::from_photo::{DECIDED, PhotoOptions, PhotoSurface, reduced, surface_from_photo};
+use asperity_pictures::light::Light;
+use asperity_pictures::photograph::load_photograph;
+use asperity_pictures::shape_from_shading::{Method, STEPS};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -157,7 +157,7 @@ pub fn compare<'py>(
             };
             let originals = table(&maps, 0, 0.0, tell)?;
             let Some(passes) = iterations else { return Ok((originals, None)) };
-            let method = asperity_texture::metamer::Method::Iterated(passes);
+            let method = asperity_pictures::metamer::Method::Iterated(passes);
             let made = all_like_the_first(&maps, method, |done| tell((1.0 + done) / parts))
                 .map_err(|(place, error)| at((place, error.to_string())))?;
             Ok::<_, String>((originals, Some(table(&made, 2, 2.0, tell)?)))

@@ -1,8 +1,8 @@
 //! Arrays as pictures and rasters, and back.
 
 use crate::error::refused;
-use asperity::texture::picture::{Picture, Samples};
-use asperity::texture::raster::Raster;
+use asperity::surface::picture::{Picture, Samples};
+use asperity::surface::raster::Raster;
 use numpy::ndarray::Dimension;
 use numpy::{
     Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2, PyReadonlyArrayDyn,

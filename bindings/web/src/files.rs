@@ -2,7 +2,7 @@
 
 use crate::exchange::{done, inbox};
 use asperity::files::Memory;
-use asperity::texture::picture::{Picture, Samples};
+use asperity::surface::picture::{Picture, Samples};
 use std::cell::RefCell;
 
 thread_local! {

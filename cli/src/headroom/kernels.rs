@@ -12,7 +12,7 @@ use asperity_dsp::micro_contact::{ContactSample, MicroContact};
 use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups, sort_by_decay};
 use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
-use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
+use asperity_surface::height_field::{HeightField, PathBlock, SurfaceBlock};
 use serde::Serialize;
 use std::fmt::Write;
 use std::hint::black_box;

@@ -7,9 +7,9 @@
 //! ```
 
 use crate::error::CliError;
+use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_shape::gltf::Document;
-use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
-use asperity_texture::raster::Raster;
+use asperity_surface::raster::Raster;
 use serde_json::Value;
 
 /// Micro-relief of a surface in our terms.

@@ -7,7 +7,7 @@ use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
 use asperity_shape::Making;
-use asperity_tools::modes_file::ModesFile;
+use asperity_shape::modes_file::ModesFile;
 use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;

@@ -4,8 +4,8 @@ use crate::plot::colour::Scale;
 use crate::plot::{Axis, Figure, Layer, Panel, Picture, Series, palette};
 use asperity_dsp::damping::Damping;
 use asperity_shape::SolvedBody;
+use asperity_shape::modes_file::ModesFile;
 use asperity_shape::vector::{Vec3, add_scaled, bounds, dot, unit};
-use asperity_tools::modes_file::ModesFile;
 
 /// Shapes drawn, in rows of four.
 const SHAPES: usize = 8;

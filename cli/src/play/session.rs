@@ -14,7 +14,7 @@ use asperity::live::channel_map::ChannelMap;
 use asperity::live::device::{self, DeviceOptions, DeviceReport};
 use asperity::open::Overrides;
 use asperity::{ContactEvent, Refusal, Scene, Stats};
-use asperity_texture::sand::SandWorker;
+use asperity_surface::sand::SandWorker;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use asperity::Scene;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::open::Overrides;
-use asperity_texture::sand::{SandThread, SandWorker};
+use asperity_surface::sand::{SandThread, SandWorker};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};

@@ -8,7 +8,7 @@ use crate::plot::{
     Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
 };
 use asperity::Wrap;
-use asperity_texture::raster::Raster;
+use asperity_surface::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
 pub const DRAWN_CONTACTS: usize = 8;

@@ -1,7 +1,7 @@
 //! Warnings of a render: what was refused, lost or clipped, and why an output is silence.
 
 use super::Report;
-use asperity_tools::silence::Rendered;
+use asperity::offline::silence::Rendered;
 
 /// One line each, with the key or field that mends it.
 pub fn warnings(rendered: &Rendered<'_>, report: &Report) -> Vec<String> {

@@ -8,8 +8,8 @@ use asperity::files::scene_file::{RoughnessEntry, SceneFile, Source, SurfaceEntr
 use asperity::offline::Render;
 use asperity::open;
 use asperity::{Quantity, SurfaceId, Wrap};
-use asperity_texture::image_io::load_channel;
-use asperity_texture::raster::Raster;
+use asperity_surface::image_io::load_channel;
+use asperity_surface::raster::Raster;
 use std::path::Path;
 
 /// Draws the picture of `STEM.svg`.

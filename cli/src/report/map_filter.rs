@@ -6,9 +6,9 @@ use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
 use asperity::{Extent, Wrap};
-use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::raster::Raster;
+use asperity_surface::height_field::{HeightField, PathBlock, SurfaceBlock};
+use asperity_surface::height_map::HeightMap;
+use asperity_surface::raster::Raster;
 use std::f64::consts::PI;
 
 const SIDE: usize = 512;

@@ -3,15 +3,15 @@
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use asperity_texture::fractal_dimension::{
+use asperity_pictures::fractal_dimension::{
     COLOUR_LIMIT, Condition, FractalDimension, colour_fraction, fractal_dimension,
 };
-use asperity_texture::image_io::{Channel, load_channel, save_gray16};
-use asperity_texture::raster::Raster;
-use asperity_texture::symmetry::{
+use asperity_pictures::symmetry::{
     Distortion, DocumentSearch, Frieze, Lattice, averaged_cell, document_lattice, find_frieze, find_lattice,
     separate, wallpaper_group,
 };
+use asperity_surface::image_io::{Channel, load_channel, save_gray16};
+use asperity_surface::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -4,7 +4,7 @@
 use super::{positive, say_preview, write_heights};
 use crate::error::CliError;
 use crate::output::check_destination;
-use asperity_texture::brownian::{BrownianDesign, Method};
+use asperity_surface::brownian::{BrownianDesign, Method};
 use clap::Args;
 use std::path::PathBuf;
 

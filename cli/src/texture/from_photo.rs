@@ -10,14 +10,15 @@ use super::{bar, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
-use asperity_texture::fractal_dimension::{COLOUR_LIMIT, Condition};
-use asperity_texture::from_photo::{
+use asperity_pictures::fractal_dimension::{COLOUR_LIMIT, Condition};
+use asperity_pictures::from_photo::{
     Doubt, MOST_TEXELS, PhotoOptions, PhotoSurface, TEXEL_M, calibration, surface_from_photo,
 };
-use asperity_texture::image_io::{self, Photograph};
-use asperity_texture::light::Light;
-use asperity_texture::raster::Raster;
-use asperity_texture::shape_from_shading::{Method, STEPS};
+use asperity_pictures::light::Light;
+use asperity_pictures::photograph::{Photograph, load_reduced_photograph};
+use asperity_pictures::shape_from_shading::{Method, STEPS};
+use asperity_surface::image_io;
+use asperity_surface::raster::Raster;
 use clap::{Args, ValueEnum};
 pub use report::Report;
 use report::Size;
@@ -206,7 +207,7 @@ pub fn make(options: &Options) -> Result<Report, CliError> {
 }
 
 fn load(path: &Path) -> Result<Photograph, CliError> {
-    image_io::load_reduced_photograph(path, MOST_TEXELS).map_err(CliError::told)
+    load_reduced_photograph(path, MOST_TEXELS).map_err(CliError::told)
 }
 
 fn write(

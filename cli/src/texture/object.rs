@@ -3,8 +3,8 @@
 use super::{positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
-use asperity_texture::raster::Raster;
-use asperity_texture::stl::{Block, FINEST_TEXEL_M};
+use asperity_pictures::stl::{Block, FINEST_TEXEL_M};
+use asperity_surface::raster::Raster;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;

@@ -4,9 +4,9 @@
 use super::{positive, say_preview, write_heights};
 use crate::error::CliError;
 use crate::output::check_destination;
-use asperity_texture::raster::Raster;
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::{SolidCut, SolidNoise};
+use asperity_surface::raster::Raster;
+use asperity_surface::solid_materials::SolidMaterial;
+use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! Height maps in a scene's folder.
 
 use super::support::Scene;
-use asperity_texture::image_io::save_gray16;
-use asperity_texture::raster::Raster;
+use asperity_surface::image_io::save_gray16;
+use asperity_surface::raster::Raster;
 
 /// A folder with these maps in it.
 pub fn with_maps(maps: &[(&str, Raster)]) -> Scene {

@@ -13,8 +13,8 @@
 use asperity::files::FileError;
 use asperity::files::scene_file::{OwnSource, SceneFile};
 use asperity::open::Overrides;
-use asperity::texture::fade::Fade;
-use asperity::texture::height_field::{
+use asperity::surface::fade::Fade;
+use asperity::surface::height_field::{
     HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity::{

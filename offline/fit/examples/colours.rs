@@ -1,14 +1,14 @@
 //! Fits of noise of any colour: `colours DRAWS SEED SECONDS [RATE_HZ] [BITS] [COLOUR…] [-s] [-v]`
 //!
-//! Every colour of `asperity_measure::coloured_noise`, in which nothing rings; with `-s`, four
+//! Every colour of `asperity_evidence::coloured_noise`, in which nothing rings; with `-s`, four
 //! modes struck a quarter of a second after the start, 20 dB louder; with `-v` the modes that were
 //! invented.
 
 use asperity_dsp::mode::Mode;
+use asperity_evidence::coloured_noise::{COLOURS, noise};
+use asperity_evidence::impact::render_fast;
+use asperity_evidence::process::cpu_seconds;
 use asperity_fit::{Fit, FitOptions, FittedMode, Recording, Warning, fit};
-use asperity_measure::coloured_noise::{COLOURS, noise};
-use asperity_measure::impact::render_fast;
-use asperity_measure::process::cpu_seconds;
 
 /// What is struck.
 const STRUCK: [(f64, f64, f64); 4] =

@@ -1,10 +1,10 @@
 //! Fits WAV files and prints a table: `recordings MAX_MODES FILE…`; the baseline is STFT peaks.
 
+use asperity_evidence::impact::render_fast;
+use asperity_evidence::process::cpu_seconds;
+use asperity_evidence::score::snr_db;
+use asperity_evidence::stft_peaks::stft_peaks;
 use asperity_fit::{ChannelChoice, FitOptions, fit, load};
-use asperity_measure::impact::render_fast;
-use asperity_measure::process::cpu_seconds;
-use asperity_measure::score::snr_db;
-use asperity_measure::stft_peaks::stft_peaks;
 
 fn main() {
     let mut args = std::env::args().skip(1);

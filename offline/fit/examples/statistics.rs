@@ -5,10 +5,10 @@
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_evidence::coloured_noise::{COLOURS, Colour, noise};
+use asperity_evidence::impact::{render_fast, with_noise};
+use asperity_evidence::process::{cpu_seconds, peak_mib};
 use asperity_fit::{ChannelChoice, FitOptions, FittedMode, Recording, fit, load};
-use asperity_measure::coloured_noise::{COLOURS, Colour, noise};
-use asperity_measure::impact::{render_fast, with_noise};
-use asperity_measure::process::{cpu_seconds, peak_mib};
 
 const RATE_HZ: f64 = 44_100.0;
 

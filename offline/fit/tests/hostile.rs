@@ -3,8 +3,8 @@
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_evidence::impact::render;
 use asperity_fit::{ChannelChoice, Fit, FitError, FitOptions, Recording, RecordingError, Warning, fit, load};
-use asperity_measure::impact::render;
 
 const RATE_HZ: f64 = 44_100.0;
 

@@ -3,11 +3,11 @@
 
 use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_dsp::mode::Mode;
+use asperity_evidence::corpus::corpus;
+use asperity_evidence::impact::render_fast;
+use asperity_evidence::score::snr_db;
+use asperity_evidence::stft_peaks::stft_peaks;
 use asperity_fit::{ChannelChoice, Fit, FitOptions, FittedMode, Recording, fit, load};
-use asperity_measure::corpus::corpus;
-use asperity_measure::impact::render_fast;
-use asperity_measure::score::snr_db;
-use asperity_measure::stft_peaks::stft_peaks;
 
 fn fitted(name: &str, max_modes: usize) -> Option<(Recording, Fit)> {
     let path = corpus("impacts")?.join(name);

@@ -7,10 +7,10 @@
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_evidence::corpus::corpus;
+use asperity_evidence::impact::render_fast;
 use asperity_fit::recording::onset;
 use asperity_fit::{ChannelChoice, FitOptions, Recording, Warning, fit, load};
-use asperity_measure::corpus::corpus;
-use asperity_measure::impact::render_fast;
 
 /// What else is in the recording.
 #[derive(Clone, Copy, PartialEq)]

@@ -4,11 +4,11 @@
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_evidence::coloured_noise::{COLOURS, Colour, noise};
+use asperity_evidence::cramer_rao::{cramer_rao, identifiable};
+use asperity_evidence::impact::{impact, render, with_noise};
+use asperity_evidence::score::{robust_rms, score};
 use asperity_fit::{FitOptions, FittedMode, Recording, fit};
-use asperity_measure::coloured_noise::{COLOURS, Colour, noise};
-use asperity_measure::cramer_rao::{cramer_rao, identifiable};
-use asperity_measure::impact::{impact, render, with_noise};
-use asperity_measure::score::{robust_rms, score};
 
 fn fitted(samples: &[f64], rate_hz: f64) -> asperity_fit::Fit {
     let recording = Recording::from_samples("made", samples.to_vec(), rate_hz).unwrap();

@@ -1,7 +1,7 @@
 //! Reduction: what is left is felt alike, on recordings that nothing was tuned on.
 
 use asperity_dsp::rng::Rng;
-use asperity_measure::corpus::corpus;
+use asperity_evidence::corpus::corpus;
 use asperity_ports::reduction::{Options, reduce};
 use asperity_ports::{Clip, Device, felt, oscillator, resample, score::Reference};
 use std::f64::consts::TAU;

@@ -27,6 +27,8 @@ mod holes;
 mod lanczos;
 pub mod mesh;
 pub mod mesh_file;
+#[cfg(feature = "modes-file")]
+pub mod modes_file;
 mod msh;
 mod obj;
 mod parts;

@@ -30,7 +30,7 @@ use crate::link::tap::NoTap;
 use crate::prepared::body::{BodySlot, Terms};
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 use std::io;
 use std::sync::Arc;
 

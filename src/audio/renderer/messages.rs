@@ -11,7 +11,7 @@ use crate::model::stamp::Stamp;
 use crate::prepared::spot::Spot;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Renderer {

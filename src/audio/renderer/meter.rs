@@ -1,6 +1,6 @@
 //! Peak meter of an audio bus.
 
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// A peak meter: up at once, down slowly.
 pub(super) struct Meter {

@@ -16,7 +16,7 @@ use asperity_dsp::actuator::{
 };
 use asperity_dsp::butterworth::{self, Butterworth};
 use asperity_dsp::limits::output as limits;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Ceiling of the limiters: full scale.

@@ -13,7 +13,7 @@ use super::Renderer;
 use crate::link::message::{Dead, Made};
 use crate::link::stats::Counters;
 use crate::prepared::body::Terms;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Bodies that ring out at the same time.
 const RINGING: usize = 64;

@@ -6,7 +6,7 @@ use crate::link::stats::Counts;
 use crate::link::tap::ContactRows;
 use asperity_dsp::hertz::FORCE_HISTORY;
 use asperity_dsp::micro_contact::Bend;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 use std::ops::Range;
 
 /// Outputs of the stages, in their order; one for all voices.

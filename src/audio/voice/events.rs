@@ -12,7 +12,7 @@ use crate::prepared::tip_force::TipForce;
 use asperity_dsp::actuator::ContactOutputState;
 use asperity_dsp::butterworth;
 use asperity_dsp::trajectory::Trajectory;
-use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, TouchKind};
+use asperity_surface::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, TouchKind};
 
 /// A force that is no touch, N.
 pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;

@@ -22,7 +22,7 @@ use asperity_dsp::butterworth::State;
 use asperity_dsp::hertz::{FORCE_HISTORY, HertzPulse, OnsetMerge, spread_force, spread_force_alone};
 use asperity_dsp::micro_contact::Onset;
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_field::{MAX_BLOCK, Reaction};
+use asperity_surface::height_field::{MAX_BLOCK, Reaction};
 
 /// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms,
 /// against jelly 20.

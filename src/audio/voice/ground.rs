@@ -10,7 +10,7 @@ use crate::prepared::area::{loudness, nestling};
 use crate::prepared::rolled_over::RolledOver;
 use crate::prepared::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
+use asperity_surface::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
     /// Probe that presses on the touched body from a step of the absolute grid on, as stiff as

@@ -7,7 +7,7 @@ use crate::model::event::ContactSample;
 use crate::model::stamp::Stamp;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Landings within this distance of the lift-off can be the same touch, m: a fingertip's width.
 const SAME_TOUCH_M: f64 = 0.01;

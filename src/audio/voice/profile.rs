@@ -6,7 +6,7 @@ use crate::audio::shared::Shared;
 use crate::prepared::overlay::{OnTheWay, Room, ShortWaves, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
+use asperity_surface::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 
 /// Request for the profile of a contact.
 #[derive(Clone, Copy)]

@@ -9,7 +9,7 @@ use crate::model::event::ContactSample;
 use crate::prepared::rolled_over::RolledOver;
 use asperity_dsp::rolling::{RollingFilter, RollingForce, RollingForceState, RollingState};
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
+use asperity_surface::height_field::{MAX_BLOCK, SurfaceBlock};
 
 /// Slower than this a contact neither rolls nor slides, m/s: it goes on as it did.
 const RESTING_M_S: f64 = 1e-4;

@@ -12,7 +12,7 @@ use crate::prepared::stiffness::within;
 use asperity_dsp::actuator::{ContactOutput, Skin, SkinState};
 use asperity_dsp::tangential::{MASS_KG, Tangential, TangentialState, friction_force_n};
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
+use asperity_surface::height_field::{MAX_BLOCK, SurfaceBlock};
 
 /// Below this speed friction no longer jumps with the direction, m/s.
 const SETTLING_M_S: f64 = 1e-3;

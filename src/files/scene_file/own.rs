@@ -3,7 +3,7 @@
 
 use super::fields::Fields;
 use crate::files::FileError;
-use asperity_texture::height_field::HeightField;
+use asperity_surface::height_field::HeightField;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::files::FileError;
 pub use crate::files::storage::Pixels;
-use asperity_texture::picture::Channel;
+use asperity_surface::picture::Channel;
 
 /// One of [`Channel::ALL`].
 pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Channel, FileError> {

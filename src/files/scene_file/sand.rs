@@ -5,7 +5,7 @@ use super::pixels::{Pixels, read_channel};
 use crate::files::FileError;
 use crate::parameters::{Parameter, buried, layer, sand, tool};
 use asperity_dsp::limits::Range;
-use asperity_texture::sand::{Buried, Layer, MAX_BURIED, MAX_LAYERS, SandDesign, SandLaw, Tool};
+use asperity_surface::sand::{Buried, Layer, MAX_BURIED, MAX_LAYERS, SandDesign, SandLaw, Tool};
 use std::path::Path;
 
 /// A bed of sand.

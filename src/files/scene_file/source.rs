@@ -8,10 +8,10 @@ use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
 use crate::parameters::{self, solid};
-use asperity_texture::force_rendering::Rendering;
-use asperity_texture::picture::Channel;
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::{ForceDirection, SolidNoiseParameters};
+use asperity_surface::force_rendering::Rendering;
+use asperity_surface::picture::Channel;
+use asperity_surface::solid_materials::SolidMaterial;
+use asperity_surface::solid_noise::{ForceDirection, SolidNoiseParameters};
 use std::path::Path;
 use toml::Value;
 

@@ -9,7 +9,7 @@ use crate::model::frame::SurfaceFrame;
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use crate::parameters::{frame, surface as parameters};
 use asperity_dsp::stick_slip::Friction;
-use asperity_texture::wrap::Wrap;
+use asperity_surface::wrap::Wrap;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 

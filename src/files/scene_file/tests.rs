@@ -1,10 +1,10 @@
 use super::*;
 use crate::model::excitation::Excitation;
 use crate::model::material::Material;
-use asperity_texture::force_rendering::Rendering;
-use asperity_texture::picture::Channel;
-use asperity_texture::sand::Layer;
-use asperity_texture::solid_materials::SolidMaterial;
+use asperity_surface::force_rendering::Rendering;
+use asperity_surface::picture::Channel;
+use asperity_surface::sand::Layer;
+use asperity_surface::solid_materials::SolidMaterial;
 
 #[path = "../../../tests/fuzz/mutation.rs"]
 mod mutation;

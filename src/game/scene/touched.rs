@@ -9,7 +9,7 @@ use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::{ProbeId, SurfaceId};
 use crate::model::strike_field::StrikePlace;
-use asperity_texture::tip_law::TipLaw;
+use asperity_surface::tip_law::TipLaw;
 
 impl Scene {
     /// Texture coordinates of a point in the body of a surface that has a

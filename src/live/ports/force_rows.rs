@@ -20,8 +20,8 @@
 
 use crate::link::tap::ContactBlock;
 use crate::model::event::{Actuator, ContactId};
-use asperity_texture::answer::capped;
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_surface::answer::capped;
+use asperity_surface::height_field::MAX_BLOCK;
 
 /// Half the length of h, ticks: how far rows lag behind what is rendered.
 pub const LAG_TICKS: u64 = 4;

@@ -6,7 +6,7 @@
 use crate::link::outlet::{Opened, PortKind, PortSetup};
 use crate::model::error::AddError;
 use crate::model::id::SurfaceId;
-pub use asperity_texture::moving_picture::PictureReader as PicturePort;
+pub use asperity_surface::moving_picture::PictureReader as PicturePort;
 
 /// A port of pictures. Its reading end draws the tiles that have [changed](PicturePort::changed)
 /// since it last looked.

@@ -4,7 +4,7 @@ use super::{AsperityWorld, BODIES};
 use crate::body::AsperityBody;
 use crate::surface::AsperitySurface;
 use asperity::open::{Overrides, ReadSurface};
-use asperity::texture::sand::SandWorker;
+use asperity::surface::sand::SandWorker;
 use asperity::{BodyId, SurfaceId};
 use godot::prelude::*;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! One pair of colliders over time: it lands, slides or rolls, rests, and leaves.
 
 use crate::step::{QUIET_LANDING_M_S, Solved, Step};
-use asperity::texture::triplanar::TriplanarPath;
+use asperity::surface::triplanar::TriplanarPath;
 use asperity::{ContactEvent, ContactId, ContactSample, SurfaceId, Touching, UvPlace};
 use glam::Vec3;
 

@@ -14,8 +14,8 @@
 #![allow(unsafe_code)]
 
 use asperity_fit::{Fit, FitOptions, Recording};
-use asperity_texture::from_photo::{PhotoOptions, reduced, surface_from_photo};
-use asperity_texture::raster::Raster;
+use asperity_pictures::from_photo::{PhotoOptions, reduced, surface_from_photo};
+use asperity_surface::raster::Raster;
 use std::cell::RefCell;
 
 /// Most modes of a body that a page plays beside four others.

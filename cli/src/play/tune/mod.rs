@@ -22,7 +22,7 @@ use asperity::live::device::{self, DeviceOptions, Player};
 use asperity::live::null_sink::NullSink;
 use asperity::open::Overrides;
 use asperity::{ContactEvent, Engine, Refusal, Renderer, Scene};
-use asperity_texture::sand::{SandThread, SandWorker};
+use asperity_surface::sand::{SandThread, SandWorker};
 use desk::Desk;
 use document::Document;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! The overview picture of a photograph: picture, parts and heights side by side.
 
-use asperity_texture::from_photo::PhotoSurface;
-use asperity_texture::light::Light;
-use asperity_texture::raster::Raster;
+use asperity_pictures::from_photo::PhotoSurface;
+use asperity_pictures::light::Light;
+use asperity_surface::raster::Raster;
 
 /// Largest side of a panel, texels.
 const PANEL: usize = 512;

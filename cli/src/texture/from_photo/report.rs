@@ -2,8 +2,8 @@
 
 use super::Options;
 use crate::texture::object::SizeMm;
-use asperity_texture::from_photo::{DECIDED, PhotoSurface};
-use asperity_texture::shape_from_shading::Method;
+use asperity_pictures::from_photo::{DECIDED, PhotoSurface};
+use asperity_pictures::shape_from_shading::Method;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! Scenes, a stroke and a body to go with a photograph's maps, so that they render at once.
 
 use crate::error::CliError;
-use asperity_texture::from_photo::{HeightCell, PhotoSurface};
+use asperity_pictures::from_photo::{HeightCell, PhotoSurface};
 
 /// The generated stroke: speed, m/s, force, N, length, s, and events a second.
 const STROKE: (f64, f64, f64, f64) = (0.1, 0.6, 2.0, 60.0);

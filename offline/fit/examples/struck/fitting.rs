@@ -1,8 +1,8 @@
 //! Fits, by this build or by another one's program.
 
 use asperity_dsp::mode::Mode;
+use asperity_evidence::process::cpu_seconds;
 use asperity_fit::{ChannelChoice, FitOptions, FittedMode, fit, load};
-use asperity_measure::process::cpu_seconds;
 use serde_json::Value;
 use std::process::Command;
 

@@ -26,8 +26,8 @@ mod partials;
 mod resonances;
 
 use asperity_dsp::mode::Mode;
+use asperity_evidence::score::snr_db;
 use asperity_fit::{ChannelChoice, Recording, load};
-use asperity_measure::score::snr_db;
 use fitting::{Fitted, by_program, in_process};
 use partials::{DecayError, decay_errors, late_partials};
 use resonances::{Resonances, resonances};

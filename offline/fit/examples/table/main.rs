@@ -18,11 +18,11 @@ mod pushes;
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_evidence::cramer_rao::cramer_rao;
+use asperity_evidence::impact::{Impact, impact};
+use asperity_evidence::process::cpu_seconds;
+use asperity_evidence::score::{Score, robust_rms, score};
 use asperity_fit::{Fit, FitOptions, FittedMode, Recording, fit};
-use asperity_measure::cramer_rao::cramer_rao;
-use asperity_measure::impact::{Impact, impact};
-use asperity_measure::process::cpu_seconds;
-use asperity_measure::score::{Score, robust_rms, score};
 
 const RATE_HZ: f64 = 44_100.0;
 /// Noise before the strike, s.
