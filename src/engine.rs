@@ -10,7 +10,7 @@ use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
 use crate::model::levels::Levels;
-use crate::prepared::probe::{PreparedProbe, remark};
+use crate::resource::probe::{PreparedProbe, remark};
 use crate::trial::TRIALS;
 use asperity_surface::sand::SandWorker;
 use std::sync::Arc;

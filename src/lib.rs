@@ -85,13 +85,12 @@ pub mod files;
 mod game;
 mod link;
 pub mod live;
-mod made;
+pub mod load;
 mod model;
 pub mod offline;
-pub mod open;
 pub mod parameters;
-mod prepared;
 mod rate;
+mod resource;
 mod trial;
 
 pub use asperity_dsp::limits;

@@ -10,7 +10,7 @@ use crate::link::ring;
 use crate::model::config::Config;
 use crate::model::error::{AddError, ConfigError};
 use crate::model::id::{ProbeId, SurfaceId};
-use crate::prepared::probe::PreparedProbe;
+use crate::resource::probe::PreparedProbe;
 
 /// A renderer at another rate.
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 use asperity::files::Memory;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{Actuator, ContactEvent, ContactId, ContactSample, Engine, Impact, Renderer, Scene};
 use std::path::Path;
 
@@ -65,7 +65,7 @@ impl Game {
         [haptic, audio]
     }
 
-    fn apply(&mut self, before: &str, after: &str) -> asperity::open::Changes {
+    fn apply(&mut self, before: &str, after: &str) -> asperity::load::Changes {
         self.scene.apply(&mut self.names, &file(before), &file(after), &Overrides::default()).unwrap()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{
     Actuator, AddError, AudioBus, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine,
     Impact, Material, Refusal, Renderer, Scene, SurfaceId,

@@ -24,9 +24,9 @@ const CRATES: [&str; 9] = [
 fn documents() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         ["README.md", "CONTRIBUTING.md", "examples/README.md"].map(|f| root().join(f)).into();
-    for folder in
-        ["docs", "dsp", "texture", "fit", "fft", "cli", "bindings/physics/pairs", "bindings/physics/rapier"]
-    {
+    let folders =
+        CRATES.iter().chain(&["docs", "offline/fft", "bindings/physics/pairs", "bindings/physics/rapier"]);
+    for folder in folders.filter(|folder| !folder.is_empty()) {
         let files = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
         found.extend(files.filter(|path| path.extension().is_some_and(|ending| ending == "md")));
     }

@@ -3,7 +3,7 @@
 
 use crate::common::{peak, rms};
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{
     Actuator, Body, BodyId, ClippedBecause, ClockMode, Config, ContactEvent, ContactId, ContactSample,
     Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock, Surface, Touching, probe_by_name,

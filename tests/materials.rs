@@ -1,7 +1,7 @@
 //! Materials and stock bodies, heard and felt through the engine: nothing recorded, nothing fitted.
 
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{
     Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, Stock, Surface,
 };

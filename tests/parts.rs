@@ -2,7 +2,7 @@
 
 use asperity::files::Memory;
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{
     Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Integrator, Probe, Renderer,
     Scene, SurfaceId, Touching,

@@ -4,8 +4,8 @@
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, LogEdit, LogEvent, Names};
 use asperity::files::scene_file::SceneFile;
+use asperity::load::{Edits, Overrides};
 use asperity::offline::{self, Options};
-use asperity::open::{Edits, Overrides};
 use asperity::{
     Actuator, Body, ClockMode, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Material,
     NoTap, Renderer, Scene, Stock, Surface, Touching, probe_by_name,

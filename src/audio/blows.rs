@@ -10,7 +10,7 @@
 use super::shared::Shared;
 use crate::link::message::Felt;
 use crate::model::stamp::Stamp;
-use crate::prepared::bank::LONGEST_CONTACT_S;
+use crate::resource::bank::LONGEST_CONTACT_S;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState};
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::mobility::MobilityState;

@@ -31,7 +31,7 @@
 //! The level is a function of the reports and of the samples rendered alone: where no load is
 //! reported, as offline, nothing is ever left out and every bit repeats.
 
-use crate::prepared::bank::MODE_LEVELS;
+use crate::resource::bank::MODE_LEVELS;
 
 /// Share of the period from which a block counts as late.
 pub(crate) const LATE: f32 = 0.8;

@@ -32,7 +32,7 @@ use crate::model::error::ConfigError;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::probe::{PreparedProbe, row_latency};
+use crate::resource::probe::{PreparedProbe, row_latency};
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::KERNEL_LATENCY;

@@ -8,9 +8,9 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{NoiseWay, OnTheWay, Room, ShortWaves, TileCells};
-use crate::prepared::stroking::Stroking;
-use crate::prepared::surface::SurfaceSlot;
+use crate::resource::overlay::{NoiseWay, OnTheWay, Room, ShortWaves, TileCells};
+use crate::resource::stroking::Stroking;
+use crate::resource::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, Missed, NoisePath, OCTAVES};
 use asperity_surface::height_field::{

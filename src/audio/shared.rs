@@ -2,7 +2,7 @@
 //! hand.
 
 use crate::model::inner_rate::InnerRate;
-use crate::prepared::probe::PreparedProbe;
+use crate::resource::probe::PreparedProbe;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::trajectory::TrajectoryDesign;

@@ -11,7 +11,7 @@ use crate::model::config::Config;
 use crate::model::error::Refusal;
 use crate::model::event::{ContactEvent, ContactSample};
 use crate::model::stamp::Stamp;
-use crate::prepared::bank::LONGEST_CONTACT_S;
+use crate::resource::bank::LONGEST_CONTACT_S;
 
 /// Events this far ahead of what is rendered wait longer than any clock's window, s.
 const FAR_AHEAD_S: f64 = 0.25;

@@ -98,7 +98,7 @@ impl Body {
 
     /// Gain of impacts beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is
     /// then far above a stroke. A scene file that leaves it out has the [level
-    /// policy](crate::open::levels) find it, and so has a scene with [levels that are
+    /// policy](crate::load::levels) find it, and so has a scene with [levels that are
     /// found](crate::LevelPolicy).
     #[must_use]
     pub fn strike_gain(mut self, gain: f64) -> Self {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// what is added, on the calling thread, before it goes out: a stroke of 0.1 m/s at 1 N in four
 /// directions with every probe of the scene, and fifty strikes a second. They land on the reference
 /// levels of scene files (−26 dBFS rms felt, −32 dBFS rms heard, strikes within full scale; see
-/// [`open::levels`](crate::open::levels)). Equal content is measured once a scene, and the same
+/// [`load::levels`](crate::load::levels)). Equal content is measured once a scene, and the same
 /// additions in the same order give the same levels. What the game sets counts on top:
 /// [`AudioBus::gain`](crate::AudioBus::gain), [`Body::gain`](crate::Body::gain) and
 /// [`Touching::gain`](crate::Touching::gain) as factors,

@@ -17,8 +17,8 @@ use crate::model::id::BodyId;
 use crate::model::level_policy::LevelPolicy;
 use crate::model::levels::{BURST, FROM, PAUSE_S, SETTLED_S, STRIKE, Strike};
 use crate::model::material::Material;
-use crate::prepared::probe::PreparedProbe;
 use crate::rate::design;
+use crate::resource::probe::PreparedProbe;
 use crate::trial::TRIALS;
 use std::sync::Arc;
 

@@ -65,7 +65,7 @@ fn stroke_at(rate_hz: f64, start: [f64; 2], velocity: [f64; 2], len: usize) -> V
         .collect()
 }
 
-// texture/tests/independent/spline.py: scipy.ndimage.map_coordinates, order 3, modes grid-wrap,
+// tests/independent/spline.py: scipy.ndimage.map_coordinates, order 3, modes grid-wrap,
 // reflect and nearest (which settles its prefilter over 12 texels: 1e-6).
 #[test]
 fn heights_between_texels_agree_with_scipy() {

@@ -7,8 +7,8 @@ use asperity::Engine;
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::files::scene_file::SceneFile;
+use asperity::load::Overrides;
 use asperity::offline::{self, Options, Render};
-use asperity::open::Overrides;
 use asperity_evidence::corpus::corpus;
 use std::path::Path;
 

@@ -7,7 +7,7 @@ use crate::material;
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_REFUSED, Failure};
 use crate::text;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{AddError, Body, BodyId, ModalModel, Mode};
 use std::ffi::c_char;
 use std::mem::offset_of;

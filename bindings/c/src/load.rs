@@ -8,7 +8,7 @@ use crate::sized;
 use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_REFUSED, ASP_UNKNOWN, Failure};
 use crate::text;
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::surface::sand::SandWorker;
 use asperity::{ClockMode, Engine};
 use std::ffi::c_char;

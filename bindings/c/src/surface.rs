@@ -8,7 +8,7 @@ use crate::image::{self, asp_image, picture};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_REFUSED, Failure};
 use crate::text;
-use asperity::open::{Overrides, ReadSurface};
+use asperity::load::{Overrides, ReadSurface};
 use asperity::surface::sand::SandWorker;
 use asperity::{BodyId, Surface, SurfaceId};
 use std::ffi::c_char;

@@ -8,7 +8,7 @@ use crate::surface::AsperitySurface;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::surface::sand::{SandThread, SandWorker};
 use asperity::{
     ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, LevelPolicy, Scene, SurfaceId,

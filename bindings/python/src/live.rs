@@ -6,7 +6,7 @@ use crate::sources::{self, Sources};
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::files::scene_file::SceneFile;
 use asperity::live::channel_map::{ChannelMap, Interleaver};
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::surface::sand::SandThread;
 use asperity::surface::sand::SandWorker;
 use asperity::{ClockMode, Engine, Scene};

@@ -5,7 +5,7 @@ use crate::open_ports::Ports;
 use asperity::files::FileError;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
-use asperity::open::{self, Overrides};
+use asperity::load::{self, Overrides};
 use asperity::{Actuator, BodyId, ClockMode, Engine, Isa, Material, ProbeId, Renderer, Scene, SurfaceId};
 use serde_json::json;
 use std::cell::RefCell;
@@ -204,7 +204,7 @@ pub extern "C" fn asp_relief(index: u32, longest: u32) -> u32 {
     done(with(|session| {
         let entry = session.file.surfaces.get(index as usize).ok_or("there is no such surface")?;
         let longest = longest.clamp(1, 4096) as usize;
-        let raster = crate::files::with(|files| open::relief_from(files, entry, session.file.seed, longest));
+        let raster = crate::files::with(|files| load::relief_from(files, entry, session.file.seed, longest));
         let raster = raster.ok_or("its heights do not belong to places")?;
         let mut bytes = Vec::with_capacity(8 + 4 * raster.values.len());
         for side in [raster.width, raster.height] {

@@ -12,7 +12,7 @@ use asperity::files::contact_log::{ContactLog, LogError, Names};
 use asperity::files::scene_file::SceneFile;
 use asperity::live::channel_map::ChannelMap;
 use asperity::live::device::{self, DeviceOptions, DeviceReport};
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{ContactEvent, Refusal, Scene, Stats};
 use asperity_surface::sand::SandWorker;
 use serde::Serialize;

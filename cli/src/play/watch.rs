@@ -5,7 +5,7 @@ use crate::error::CliError;
 use asperity::Scene;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity_surface::sand::{SandThread, SandWorker};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Report of a render: what `--json` prints and the plain words are made from.
 
 use asperity::Isa;
+use asperity::load::levels::Levels;
 use asperity::offline::Render;
-use asperity::open::levels::Levels;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

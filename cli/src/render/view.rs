@@ -5,8 +5,8 @@ use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
 use crate::plot;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::{RoughnessEntry, SceneFile, Source, SurfaceEntry};
+use asperity::load;
 use asperity::offline::Render;
-use asperity::open;
 use asperity::{Quantity, SurfaceId, Wrap};
 use asperity_surface::image_io::load_channel;
 use asperity_surface::raster::Raster;
@@ -81,7 +81,7 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
                     ("from above", upright)
                 }
                 (Source::Flat, _) => ("from above", Raster::constant(1, 1, 0.0)),
-                _ => ("from above", open::relief(surface, file.seed, GROUND_PX)?),
+                _ => ("from above", load::relief(surface, file.seed, GROUND_PX)?),
             };
             let (low, high) = heights.range();
             let (title, heights) = if low < high {

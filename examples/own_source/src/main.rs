@@ -12,7 +12,7 @@
 
 use asperity::files::FileError;
 use asperity::files::scene_file::{OwnSource, SceneFile};
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::surface::fade::Fade;
 use asperity::surface::height_field::{
     HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,

@@ -8,8 +8,8 @@
 use asperity::Engine;
 use asperity::files::contact_log::ContactLog;
 use asperity::files::scene_file::SceneFile;
+use asperity::load::{Maps, Overrides};
 use asperity::offline::{self, Options};
-use asperity::open::{Maps, Overrides};
 use asperity_batch::record::{Record, Samples};
 use asperity_batch::stroke::{DataLevels, Stroke, Take, data_levels};
 use asperity_batch::surfaces::choices;

@@ -10,7 +10,7 @@ use crate::stroke::{DataLevels, Stroke, data_levels};
 use crate::surfaces::{Choice, choices, split};
 use crate::{parquet_file, webdataset, whole_file};
 use asperity::files::FileError;
-use asperity::open::Maps;
+use asperity::load::Maps;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fs::{self, File};

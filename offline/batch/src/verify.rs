@@ -7,7 +7,7 @@ use crate::record::Samples;
 use crate::spec::Spec;
 use crate::stroke::{DataLevels, rendered};
 use asperity::files::FileError;
-use asperity::open::Maps;
+use asperity::load::Maps;
 use std::path::Path;
 
 /// Shards and strokes that were looked at.

@@ -1,8 +1,8 @@
 //! What a stroke of a data set costs beside the engine.
 
 use asperity::Engine;
+use asperity::load::{Maps, Overrides};
 use asperity::offline::{self, Options};
-use asperity::open::{Maps, Overrides};
 use asperity_batch::stroke::{Stroke, data_levels};
 use asperity_batch::surfaces::choices;
 use asperity_batch::{DataSet, Spec};

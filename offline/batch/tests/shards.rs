@@ -288,9 +288,9 @@ fn a_record_drawn_renders_as_its_two_texts_do_and_as_a_scene_with_room_for_more(
         let path = home.join(format!("{}.toml", stroke.id));
         let file = asperity::files::scene_file::SceneFile::parse(&stroke.scene, &path).unwrap();
         let log = asperity::files::contact_log::ContactLog::parse(&stroke.contacts, &stroke.id).unwrap();
-        let overrides = asperity::open::Overrides {
+        let overrides = asperity::load::Overrides {
             kernel: Some(asperity::Isa::Portable),
-            ..asperity::open::Overrides::default()
+            ..asperity::load::Overrides::default()
         };
         let asperity::Engine { scene, renderer, names, .. } =
             asperity::Engine::from_scene(&file, &overrides).unwrap();
@@ -328,9 +328,9 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
             }
             let file =
                 asperity::files::scene_file::SceneFile::parse(scene, &home.join("stroke.toml")).unwrap();
-            let overrides = asperity::open::Overrides {
+            let overrides = asperity::load::Overrides {
                 kernel: Some(asperity::Isa::Portable),
-                ..asperity::open::Overrides::default()
+                ..asperity::load::Overrides::default()
             };
             let asperity::Engine { scene, renderer, names, .. } =
                 asperity::Engine::from_scene(&file, &overrides).unwrap();

@@ -114,7 +114,7 @@ fn a_relief_turned_over_is_told_by_a_flag() {
     assert!(correlation(&sunk.displacement, &relief) < -0.95 && sunk.sign.is_decided());
 }
 
-/// `texture/tests/independent/flat_ground.py`: a solver written apart; the same relief, no noise.
+/// `tests/independent/flat_ground.py`: a solver written apart; the same relief, no noise.
 #[test]
 fn heights_agree_with_an_independent_solver() {
     let relief = Raster::from_fn(48, 48, |x, y| {

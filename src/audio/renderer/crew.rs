@@ -27,7 +27,7 @@ use crate::audio::seat::Seat;
 use crate::audio::shared::{At, Shared, Stretch};
 use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
 use crate::link::tap::NoTap;
-use crate::prepared::body::{BodySlot, Terms};
+use crate::resource::body::{BodySlot, Terms};
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::MAX_BLOCK;

@@ -8,7 +8,7 @@ use crate::link::message::Message;
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
-use crate::prepared::surface::SurfaceSlot;
+use crate::resource::surface::SurfaceSlot;
 use asperity_dsp::actuator::ChannelControl;
 use std::sync::atomic::Ordering::Relaxed;
 

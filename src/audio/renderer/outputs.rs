@@ -7,8 +7,8 @@ use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::model::inner_rate::InnerRate;
-use crate::prepared::body::Terms;
-use crate::prepared::impulse_ring::ImpulseRing;
+use crate::resource::body::Terms;
+use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,

@@ -12,7 +12,7 @@
 use super::Renderer;
 use crate::link::message::{Dead, Made};
 use crate::link::stats::Counters;
-use crate::prepared::body::Terms;
+use crate::resource::body::Terms;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Bodies that ring out at the same time.

@@ -13,9 +13,9 @@ use crate::link::stats::{Counters, Counts};
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
-use crate::prepared::body::Terms;
-use crate::prepared::body_rub::RubAsked;
-use crate::prepared::spot::Spot;
+use crate::resource::body::Terms;
+use crate::resource::body_rub::RubAsked;
+use crate::resource::spot::Spot;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 

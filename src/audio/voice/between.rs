@@ -15,8 +15,8 @@
 
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
-use crate::prepared::overlay::{OnTheWay, ShortWaves};
-use crate::prepared::probe::PreparedProbe;
+use crate::resource::overlay::{OnTheWay, ShortWaves};
+use crate::resource::probe::PreparedProbe;
 use asperity_dsp::fractal_noise::OCTAVES;
 use asperity_dsp::micro_contact::{Bend, Bends, GroundBetween, Integrator, Probe};
 use asperity_dsp::trajectory::PathPoint;

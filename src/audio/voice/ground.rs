@@ -6,9 +6,9 @@ use super::rolling::Rolling;
 use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Shared, Stretch};
-use crate::prepared::area::{loudness, nestling};
-use crate::prepared::rolled_over::RolledOver;
-use crate::prepared::stiffness::stiffness_n_m;
+use crate::resource::area::{loudness, nestling};
+use crate::resource::rolled_over::RolledOver;
+use crate::resource::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 

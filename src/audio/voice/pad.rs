@@ -3,8 +3,8 @@
 
 use super::PadSample;
 use crate::link::stats::Counts;
-use crate::prepared::probe::PreparedProbe;
-use crate::prepared::stiffness::{Ground, stiffness_n_m};
+use crate::resource::probe::PreparedProbe;
+use crate::resource::stiffness::{Ground, stiffness_n_m};
 use asperity_dsp::micro_contact::{ContactState, GroundBetween, MicroContact, Probe};
 
 /// A contact force so many times what presses is a blow: a heavy or stiff probe comes down from a

@@ -5,7 +5,7 @@
 
 use crate::model::event::ContactSample;
 use crate::model::stamp::Stamp;
-use crate::prepared::surface::SurfaceSlot;
+use crate::resource::surface::SurfaceSlot;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_surface::height_field::MAX_BLOCK;
 

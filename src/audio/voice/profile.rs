@@ -3,7 +3,7 @@
 
 use crate::audio::seat::{Noise, Seat};
 use crate::audio::shared::Shared;
-use crate::prepared::overlay::{OnTheWay, Room, ShortWaves, TileCells};
+use crate::resource::overlay::{OnTheWay, Room, ShortWaves, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_surface::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};

@@ -6,7 +6,7 @@
 //! no slip slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
-use crate::prepared::rolled_over::RolledOver;
+use crate::resource::rolled_over::RolledOver;
 use asperity_dsp::rolling::{RollingFilter, RollingForce, RollingForceState, RollingState};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_surface::height_field::{MAX_BLOCK, SurfaceBlock};

@@ -7,8 +7,8 @@
 use super::PadSample;
 use super::coupling::STILL_M_S2;
 use crate::audio::smoothed::Ramp;
-use crate::prepared::probe::PreparedProbe;
-use crate::prepared::stiffness::within;
+use crate::resource::probe::PreparedProbe;
+use crate::resource::stiffness::within;
 use asperity_dsp::actuator::{ContactOutput, Skin, SkinState};
 use asperity_dsp::tangential::{MASS_KG, Tangential, TangentialState, friction_force_n};
 use asperity_dsp::trajectory::PathPoint;

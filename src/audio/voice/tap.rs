@@ -6,7 +6,7 @@ use crate::audio::seat::Seat;
 use crate::audio::shared::Stretch;
 use crate::link::tap::Tap;
 use crate::model::event::Actuator;
-use crate::prepared::tip_force::Ground;
+use crate::resource::tip_force::Ground;
 
 impl Voice {
     /// Shows the stretch to a tap that watches, a row for each sample that leaves; a contact that

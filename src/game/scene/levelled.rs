@@ -11,7 +11,7 @@ use crate::model::id::BodyId;
 use crate::model::level_policy::LevelPolicy;
 use crate::model::levels::REFERENCE_SPEED_M_S;
 use crate::model::surface::Surface;
-use crate::prepared::surface::SurfaceLevels;
+use crate::resource::surface::SurfaceLevels;
 use asperity_dsp::micro_contact::Probe;
 
 impl Scene {

@@ -12,9 +12,9 @@ use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emph
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::LONGEST_CONTACT_S;
-use crate::prepared::spot::Spot;
-use crate::prepared::stroking::elastic;
+use crate::resource::bank::LONGEST_CONTACT_S;
+use crate::resource::spot::Spot;
+use crate::resource::stroking::elastic;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
 use std::sync::atomic::Ordering::Relaxed;

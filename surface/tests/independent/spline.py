@@ -1,4 +1,4 @@
-"""Figures for texture/tests/height_map_figures.rs: scipy's cubic spline interpolation of a small map.
+"""Figures for tests/height_map_figures.rs: scipy's cubic spline interpolation of a small map.
 
 Run: python3 spline.py   (numpy, scipy)
 """

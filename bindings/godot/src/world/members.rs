@@ -3,7 +3,7 @@
 use super::{AsperityWorld, BODIES};
 use crate::body::AsperityBody;
 use crate::surface::AsperitySurface;
-use asperity::open::{Overrides, ReadSurface};
+use asperity::load::{Overrides, ReadSurface};
 use asperity::surface::sand::SandWorker;
 use asperity::{BodyId, SurfaceId};
 use godot::prelude::*;

@@ -20,7 +20,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::device::{self, DeviceOptions, Player};
 #[cfg(not(feature = "device"))]
 use asperity::live::null_sink::NullSink;
-use asperity::open::Overrides;
+use asperity::load::Overrides;
 use asperity::{ContactEvent, Engine, Refusal, Renderer, Scene};
 use asperity_surface::sand::{SandThread, SandWorker};
 use desk::Desk;

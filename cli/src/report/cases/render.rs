@@ -5,8 +5,8 @@ use crate::error::CliError;
 use crate::report::refused;
 use asperity::files::contact_log::ContactLog;
 use asperity::files::scene_file::SceneFile;
+use asperity::load::Overrides;
 use asperity::offline::{self, Options};
-use asperity::open::Overrides;
 use asperity::{ContactBlock, Engine, Integrator, PathMode, Preset, Tap};
 use std::path::PathBuf;
 

@@ -9,11 +9,11 @@
 //! that begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
 
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, Owner};
-use crate::prepared::body_field::BodyField;
-use crate::prepared::holding::HeldModes;
-use crate::prepared::slider::{self, Slider};
-use crate::prepared::spot::Spot;
+use crate::resource::bank::{Bank, Owner};
+use crate::resource::body_field::BodyField;
+use crate::resource::holding::HeldModes;
+use crate::resource::slider::{self, Slider};
+use crate::resource::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
     AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup, design_group,

@@ -1,8 +1,8 @@
 //! Ground that is rolled over (`dsp::rolling`): which of its waves the ride and the patch leave.
 
-use crate::prepared::area::FINGERTIP_RADIUS_M;
-use crate::prepared::stiffness::stiffness_n_m;
-use crate::prepared::surface::SurfaceSlot;
+use crate::resource::area::FINGERTIP_RADIUS_M;
+use crate::resource::stiffness::stiffness_n_m;
+use crate::resource::surface::SurfaceSlot;
 use asperity_dsp::fractal_noise::{FractalNoise, growth};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::rolling::{Rolling, RollingFilter, RollingForce};

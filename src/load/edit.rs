@@ -19,7 +19,7 @@ pub type MakeSurface<'a> = dyn FnMut(&str, &Names) -> Option<Surface> + 'a;
 pub struct Edits<'a> {
     /// Place of the files that surfaces name; the disk unless told otherwise.
     pub files: &'a dyn Files,
-    /// Sources of one's own, as in [`Overrides::own`](crate::open::Overrides::own).
+    /// Sources of one's own, as in [`Overrides::own`](crate::load::Overrides::own).
     pub own: &'a [(&'a str, MakeSource)],
     /// Surfaces that the recording cannot hold.
     pub surfaces: Option<&'a mut MakeSurface<'a>>,

@@ -1,8 +1,8 @@
 //! A surface, prepared for the audio half.
 
 use crate::model::surface::Surface;
-use crate::prepared::overlay::Overlay;
-use crate::prepared::stroking::Stroking;
+use crate::resource::overlay::Overlay;
+use crate::resource::stroking::Stroking;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_surface::height_field::Properties;
 

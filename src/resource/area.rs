@@ -9,7 +9,7 @@
 //! mass follows them without a sound: on a crest it touches with less of its skin than on a plane,
 //! in a hollow with more.
 
-use crate::prepared::stiffness::within;
+use crate::resource::stiffness::within;
 
 /// Radius of a fingertip's pulp, m: of what has no tip of its own. Hertz fits of fingers take 5 to
 /// 10 mm; **chosen** among them.

@@ -6,7 +6,7 @@
 //! gains that were, fading in with those that come. So the bank hears no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::Owner;
+use crate::resource::bank::Owner;
 use asperity_dsp::modal_bank::{Input, LANES, LaneGains};
 use asperity_surface::height_field::MAX_BLOCK;
 

@@ -6,8 +6,8 @@ use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{BodyEntry, SurfaceEntry, probe_of};
 use crate::game::scene::Scene;
-use crate::made::maker::Maker;
-use crate::made::maps::Maps;
+use crate::load::maker::Maker;
+use crate::load::maps::Maps;
 use crate::model::body::Body;
 use crate::model::id::BodyId;
 use crate::model::surface::Surface;
@@ -40,7 +40,7 @@ impl Scene {
     /// found; 1 where nothing was found.
     ///
     /// ```
-    /// use asperity::open::Overrides;
+    /// use asperity::load::Overrides;
     /// use asperity::{Config, Engine};
     ///
     /// let Engine { mut scene, .. } = Config::default().build()?;

@@ -8,8 +8,8 @@
 //! it is the tool's own bending and its grip. What strikes the ground without that spring between
 //! is the tip in front of it, and the momentum of the tool behind arrives with the contact force.
 
-use crate::prepared::stiffness::Ladder;
-use crate::prepared::stroking::restitution;
+use crate::resource::stiffness::Ladder;
+use crate::resource::stroking::restitution;
 use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::{Choice, Integrator, MicroContact, Probe};
 use asperity_dsp::mobility::Mobility;

@@ -7,7 +7,7 @@
 
 use crate::model::mode_shapes::ModeShapes;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, Owner};
+use crate::resource::bank::{Bank, Owner};
 use asperity_dsp::held::{Hold, Pole, held};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{GroupOptions, LANES, ModeGroup, design_group};

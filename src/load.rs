@@ -2,26 +2,31 @@
 
 mod change;
 mod doubts;
+pub(crate) mod edit;
 pub mod levels;
+mod made_with;
+pub(crate) mod maker;
+pub(crate) mod maps;
 mod parts;
+pub(crate) mod source;
 
 use crate::engine::Engine;
 use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
-pub use crate::made::edit::{Edits, MakeSurface};
-use crate::made::maker::{self, Maker};
-pub use crate::made::maps::Maps;
 use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
 use crate::model::preset::Preset;
-use crate::prepared::probe::remark;
+use crate::resource::probe::remark;
 use asperity_dsp::micro_contact::{Integrator, MicroContact};
 use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
 use asperity_surface::raster::Raster;
 pub use change::Changes;
+pub use edit::{Edits, MakeSurface};
 use levels::Levels;
+use maker::Maker;
+pub use maps::Maps;
 pub use parts::ReadSurface;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

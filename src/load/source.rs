@@ -88,7 +88,7 @@ impl Ground<'_> {
         }
     }
 
-    /// Heights of a source on a grid, as in [`crate::open::relief`].
+    /// Heights of a source on a grid, as in [`crate::load::relief`].
     pub fn relief(self, source: &Source, longest: usize) -> Option<Raster> {
         if !Self::has_places(source) {
             return None;

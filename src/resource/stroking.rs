@@ -3,7 +3,7 @@
 
 use crate::model::material::Material;
 use crate::model::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};
-use crate::prepared::stiffness::Ground;
+use crate::resource::stiffness::Ground;
 use asperity_dsp::DesignError;
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::{Elastic, HertzContact};

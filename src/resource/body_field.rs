@@ -6,10 +6,10 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
-use crate::prepared::holding::{HeldModes, Holding};
-use crate::prepared::impulse_ring::ImpulseRing;
-use crate::prepared::slider::{self, Slider};
+use crate::resource::bank::{Bank, LONGEST_CONTACT_S, Owner};
+use crate::resource::holding::{HeldModes, Holding};
+use crate::resource::impulse_ring::ImpulseRing;
+use crate::resource::slider::{self, Slider};
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;

@@ -3,8 +3,8 @@
 use crate::model::diffuse::Diffuse;
 use crate::model::residual::Residual;
 use crate::model::stamp::Stamp;
-use crate::prepared::bank::LONGEST_CONTACT_S;
-use crate::prepared::impulse_ring::ImpulseRing;
+use crate::resource::bank::LONGEST_CONTACT_S;
+use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::diffuse::{
     BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffusePart, DiffuseState,
