@@ -9,8 +9,6 @@
 //! | [`paths`] | which arguments are read and which written |
 //! | [`progress`] | a bar on a terminal, after a second, and nothing in a pipe |
 //! | [`wav`], [`csv`] | samples and tables on disk |
-//! | [`pixels`] | PNG pictures |
-//! | [`plot`] | plots as SVG |
 //!
 //! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options:
 //! &Options) -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
@@ -37,9 +35,7 @@ mod measure;
 mod modes;
 mod output;
 mod paths;
-mod pixels;
 mod play;
-mod plot;
 mod progress;
 mod render;
 mod report;

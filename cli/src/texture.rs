@@ -111,7 +111,7 @@ fn write_heights(path: &Path, heights_m: &Raster, metres_per_px: f64) -> Result<
     let count = heights_m.values.len().max(1) as f64;
     let rms_m = (heights_m.values.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / count).sqrt();
     let mut outputs = crate::output::Outputs::new();
-    outputs.write(path, &crate::pixels::png16(heights_m.width, heights_m.height, &grey))?;
+    outputs.write(path, &asperity_plot::pixels::png16(heights_m.width, heights_m.height, &grey))?;
     Ok(Preview {
         size: heights_m.width,
         metres_per_px,
@@ -131,9 +131,9 @@ fn say_preview(preview: &Preview, json: bool, width_m: f64) -> Result<(), CliErr
     crate::output::say(&format!(
         "{0} × {0} texels of {1}: relief {2}, rms {3}\nwrote {4}; in a scene file: width_m = {5}, height_m = {5}, relief_m = {6:.4e}",
         preview.size,
-        crate::plot::quantity(preview.metres_per_px, "m"),
-        crate::plot::quantity(preview.relief_m, "m"),
-        crate::plot::quantity(preview.rms_m, "m"),
+        asperity_plot::quantity(preview.metres_per_px, "m"),
+        asperity_plot::quantity(preview.relief_m, "m"),
+        asperity_plot::quantity(preview.rms_m, "m"),
         files.join(", "),
         width_m,
         preview.relief_m,

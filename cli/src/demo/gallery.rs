@@ -2,8 +2,8 @@
 
 use super::demo_scene::DemoScene;
 use super::strokes::{Finger, log};
-use crate::pixels;
 use asperity::files::contact_log::LogLine;
+use asperity_plot::pixels;
 
 /// Side of the gallery's surfaces, m.
 const SIDE_M: f64 = 0.12;

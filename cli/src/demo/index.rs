@@ -4,8 +4,8 @@ use super::bowl;
 use super::demo_scene::DemoScene;
 use crate::fit;
 use crate::modes;
-use crate::plot::quantity;
 use crate::render::Report;
+use asperity_plot::quantity;
 use std::fmt::Write;
 use std::path::Path;
 

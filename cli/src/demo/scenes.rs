@@ -3,9 +3,9 @@
 use super::demo_scene::DemoScene;
 use super::plates::{PLATES, Plate, RELIEF_M, SIDE_M};
 use super::strokes::{Finger, log};
-use crate::pixels;
 use asperity::files::contact_log::{LogEvent, LogHand, LogLine, Striker};
 use asperity::{ModalModel, Mode};
+use asperity_plot::pixels;
 
 /// Seconds before the first event, so that a player that fades in cuts nothing off.
 const LEAD_S: f64 = 0.15;

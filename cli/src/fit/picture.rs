@@ -2,8 +2,8 @@
 //! a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
 //! is right or wrong.
 
-use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, decibels, palette, spectrogram};
 use asperity_fit::{Fit, Recording};
+use asperity_plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, decibels, palette, spectrogram};
 
 /// Most modes whose ring is drawn as a line.
 const DRAWN: usize = 80;

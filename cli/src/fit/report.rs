@@ -86,7 +86,7 @@ impl Report {
             options.output.display(),
             self.modes,
             self.snr_from_onset_db,
-            crate::plot::decibels(self.struck_peak_db),
+            asperity_plot::decibels(self.struck_peak_db),
             self.onset_s,
             self.noise_floor_db,
             self.seconds

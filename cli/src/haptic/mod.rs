@@ -321,7 +321,7 @@ fn say(report: &Report, path: &Path) -> Result<(), CliError> {
             "what is left: third octaves in band off by {:.1} dB, balance {:.1} dB, level {} dB, envelope {:.3}",
             score.in_band_error_db,
             score.balance_db,
-            crate::plot::decibels(score.level_bias_db),
+            asperity_plot::decibels(score.level_bias_db),
             score.envelope_correlation
         ));
     }

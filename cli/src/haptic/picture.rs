@@ -1,7 +1,7 @@
 //! `haptic --plot`: what was and what is left, above each other.
 
 use super::Made;
-use crate::plot::{
+use asperity_plot::{
     Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram, third_octaves,
 };
 use asperity_ports::{Device, felt};

@@ -8,7 +8,7 @@ mod plain;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
-use crate::pixels;
+use asperity_plot::pixels;
 use asperity_shape::ShapeError;
 use asperity_shape::gltf::{Document, Placed};
 use clap::Args;

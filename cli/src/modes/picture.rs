@@ -1,8 +1,8 @@
 //! The picture of a solved body: its first shapes on the mesh, its frequencies, its damping.
 
-use crate::plot::colour::Scale;
-use crate::plot::{Axis, Figure, Layer, Panel, Picture, Series, palette};
 use asperity_dsp::damping::Damping;
+use asperity_plot::colour::Scale;
+use asperity_plot::{Axis, Figure, Layer, Panel, Picture, Series, palette};
 use asperity_shape::SolvedBody;
 use asperity_shape::modes_file::ModesFile;
 use asperity_shape::vector::{Vec3, add_scaled, bounds, dot, unit};

@@ -9,7 +9,7 @@ mod view;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
 use crate::scene_log::{load_log, read_past};
-use crate::{haptic, pixels, plot, wav};
+use crate::{haptic, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::{SceneFile, Source, SurfaceEntry};
@@ -18,6 +18,7 @@ use asperity::load::Overrides;
 use asperity::offline::silence::Rendered;
 use asperity::offline::{self, Render};
 use asperity::{Integrator, Isa, PathMode, Preset, Quantity, SurfaceId};
+use asperity_plot::pixels;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
@@ -145,11 +146,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let files: Vec<String> = report.files.iter().map(|path| path.display().to_string()).collect();
     output::say(&format!(
         "{} of signal at {:.0}× real time: {}, {}, {}; audio peak {:.3}\nwrote {}",
-        plot::quantity(report.duration_s, "s"),
+        asperity_plot::quantity(report.duration_s, "s"),
         report.real_time_factor,
-        plot::counted(report.events, "event"),
-        plot::counted(report.micro_collisions, "micro-collision"),
-        plot::counted(report.impacts, "impact"),
+        asperity_plot::counted(report.events, "event"),
+        asperity_plot::counted(report.micro_collisions, "micro-collision"),
+        asperity_plot::counted(report.impacts, "impact"),
         report.audio_peak,
         files.join(", "),
     ));

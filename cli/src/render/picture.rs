@@ -4,10 +4,10 @@
 //! it; the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and
 //! spectra.
 
-use crate::plot::{
+use asperity::Wrap;
+use asperity_plot::{
     Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
 };
-use asperity::Wrap;
 use asperity_surface::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
@@ -389,7 +389,7 @@ fn levels_panel(take: &Take<'_>) -> Panel {
         .into_iter()
         .chain([("heard", palette::AUDIO, take.audio)]);
     for (label, colour, samples) in curves {
-        let bands = crate::plot::third_octaves(samples, take.sample_rate_hz);
+        let bands = asperity_plot::third_octaves(samples, take.sample_rate_hz);
         let top = bands.iter().map(|band| band[1]).fold(f64::NEG_INFINITY, f64::max);
         if top.is_finite() {
             let points = bands.iter().map(|[hz, db]| [*hz, db - top]).collect();

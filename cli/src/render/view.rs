@@ -2,7 +2,6 @@
 
 use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
-use crate::plot;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::{RoughnessEntry, SceneFile, Source, SurfaceEntry};
 use asperity::load;
@@ -45,13 +44,13 @@ pub fn draw(
         title: title(&file.path),
         summary: vec![format!(
             "{} at {} Hz · {} · {}, {}, {} · audio peak {}",
-            plot::quantity(report.duration_s, "s"),
+            asperity_plot::quantity(report.duration_s, "s"),
             report.sample_rate_hz,
             if surfaces.is_empty() { "no surface".to_owned() } else { surfaces.join(", ") },
-            plot::counted(report.events, "event"),
-            plot::counted(report.micro_collisions, "micro-collision"),
-            plot::counted(report.impacts, "impact"),
-            plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
+            asperity_plot::counted(report.events, "event"),
+            asperity_plot::counted(report.micro_collisions, "micro-collision"),
+            asperity_plot::counted(report.impacts, "impact"),
+            asperity_plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
         )],
         sample_rate_hz: render.sample_rate_hz,
         audio: &render.mix(),

@@ -1,9 +1,9 @@
 //! The stability of the contact model as a picture and as a sentence.
 
 use super::stability::{Cell, RATES_HZ, STIFFNESS_N_M};
-use crate::plot::{Svg, TextStyle, quantity};
 use asperity::Integrator;
 use asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
+use asperity_plot::{Svg, TextStyle, quantity};
 
 const CELL_PX: [f64; 2] = [62.0, 40.0];
 const LEFT_PX: f64 = 96.0;
@@ -17,7 +17,7 @@ const CHAOTIC: &str = "#b71c1c";
 /// upwards, rate to the right.
 #[must_use]
 pub fn svg(cells: &[Cell]) -> String {
-    let mut svg = Svg::new();
+    let mut svg = Svg::default();
     let block = [CELL_PX[0] * RATES_HZ.len() as f64, CELL_PX[1] * STIFFNESS_N_M.len() as f64];
     let width = 2.0 * (LEFT_PX + block[0]) + BLOCK_GAP_PX;
     let height = TOP_PX + 2.0 * (block[1] + 76.0);

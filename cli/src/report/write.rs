@@ -4,7 +4,7 @@ use super::Row;
 use super::end_to_end::Preset;
 use super::from_reports::Stroke;
 use super::shed::LoadLevel;
-use crate::plot::{Axis, Figure, Layer, Panel, Series, palette};
+use asperity_plot::{Axis, Figure, Layer, Panel, Series, palette};
 use std::fmt::Write;
 
 /// Errors below this are drawn here: a logarithmic axis has no zero.

@@ -330,7 +330,7 @@ mod tests {
             .flat_map(|y| (0..96).flat_map(move |x| [half(x, y, y < 40), tile(x, y), half(x, y, y >= 40)]))
             .map(|level: u32| level as u8)
             .collect();
-        std::fs::write(&photo, crate::pixels::png_rgb(96, 80, &picture)).unwrap();
+        std::fs::write(&photo, asperity_plot::pixels::png_rgb(96, 80, &picture)).unwrap();
         let out = folder.path().join("out");
         let arguments = ["from-photo", photo.to_str().unwrap(), "-o", out.to_str().unwrap()];
         #[derive(clap::Parser)]

@@ -2,10 +2,10 @@
 
 use super::{Case, LENGTH_M, TEXELS};
 use crate::error::CliError;
-use crate::pixels;
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::{ModalModel, Mode};
+use asperity_plot::pixels;
 use std::path::Path;
 
 /// Profiles of a kind that a figure is of.

@@ -175,13 +175,13 @@ impl Report {
             ", {} (confidence {:.2}), relief {}{}, micro-relief {}, roughness {:.2}",
             self.sign,
             self.sign_confidence,
-            crate::plot::quantity(self.relief_m, "m"),
+            asperity_plot::quantity(self.relief_m, "m"),
             if options.relief_m.is_none() && self.relief_m > 0.0 {
                 " by its contrast (--relief-m where it is known)"
             } else {
                 ""
             },
-            crate::plot::quantity(self.micro_relief_m, "m"),
+            asperity_plot::quantity(self.micro_relief_m, "m"),
             self.roughness,
         );
         text.push_str(

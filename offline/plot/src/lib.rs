@@ -6,11 +6,14 @@
 //! smallest and largest value a pixel column, so that no click is lost and a minute costs no more
 //! than a second.
 //!
-//! ```text
+//! ```
+//! use asperity_plot::{Axis, Figure, Panel, SpectrogramOptions, spectrogram};
+//!
+//! let samples: Vec<f32> = (0..4800).map(|n| (n as f32 * 0.06).sin()).collect();
 //! let mut figure = Figure::new("tile.wav");
 //! let panel = Panel::new("recording", Axis::new("time", "s"), Axis::log("frequency", "Hz"));
-//! figure.row(220.0, [panel.with(plot::spectrogram(&samples, rate_hz, &SpectrogramOptions::default()))]);
-//! outputs.write(path, figure.svg().as_bytes())?;
+//! figure.row(220.0, [panel.with(spectrogram(&samples, 48_000.0, &SpectrogramOptions::default()))]);
+//! assert!(figure.svg().starts_with("<svg"));
 //! ```
 //!
 //! The SVG is written by hand: a plotting library brings four packages and cannot place a picture.
@@ -19,6 +22,7 @@ mod axis;
 pub mod colour;
 mod decimate;
 mod draw;
+pub mod pixels;
 mod spectrogram;
 mod svg;
 

@@ -19,7 +19,7 @@ const FRAME: &str = "#9aa0a6";
 const LETTER: f64 = 0.56;
 
 pub fn figure(figure: &Figure) -> String {
-    let mut svg = Svg::new();
+    let mut svg = Svg::default();
     let mut y = 34.0;
     svg.text(
         [16.0, y],
