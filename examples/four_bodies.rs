@@ -8,7 +8,7 @@
 //! `cargo run --release --example four_bodies -- FOLDER`; it writes FOLDER/four_bodies.wav.
 
 use asperity::files::wav::write_wav;
-use asperity::{AudioBus, Body, Config, ContactEvent, Engine, Impact, Material, Stock};
+use asperity::{AudioBus, Body, BusId, Config, ContactEvent, Engine, Impact, Material, Stock};
 use glam::DVec3;
 use std::error::Error;
 use std::f64::consts::FRAC_PI_4;
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let config = Config { audio: vec![AudioBus::default(); things.len()], ..Config::default() };
     let Engine { mut scene, mut renderer, .. } = config.build()?;
     for (bus, (shape, material, size_m, _)) in things.iter().enumerate() {
-        let body = scene.add_body(Body::stock(*shape, *material, *size_m)?.on_bus(bus))?;
+        let body = scene.add_body(Body::stock(*shape, *material, *size_m)?.bus(BusId(bus)))?;
         scene.report(
             0.2 + 0.6 * bus as f64,
             ContactEvent::Impact(Impact::from_impulse(body, 0.002, 1.0, 0.6)),

@@ -27,7 +27,7 @@ use asperity::offline::{self, Options};
 use asperity::surface::height_map::HeightMap;
 use asperity::surface::raster::Raster;
 use asperity::{
-    Actuator, AudioBus, Body, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
+    AudioBus, Body, BodyId, ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
     Extent, Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
 };
 use std::error::Error;
@@ -93,8 +93,8 @@ fn setup(clock: ClockMode) -> Result<Engine, Box<dyn Error>> {
     let audio = AudioBus { limit: true, ..AudioBus::default() }; // a sound card clips at ±1
     let config = Config { clock, sample_rate_hz: rate_hz(), audio: vec![audio], ..Config::default() };
     let mut engine = config.build()?;
-    let tile = engine.scene.add_body(Body::new(tile()?).of(Material::CERAMIC))?; // or Body::stock(…)
-    let plate = engine.scene.add_surface(grooves()?.on(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)
+    let tile = engine.scene.add_body(Body::new(tile()?).material(Material::CERAMIC))?; // or Body::stock(…)
+    let plate = engine.scene.add_surface(grooves()?.body(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)
     engine.names.bodies.insert("tile".into(), tile);
     engine.names.surfaces.insert("plate".into(), plate);
     Ok(engine)
@@ -116,7 +116,7 @@ impl Finger {
         let velocity_m_s = [-speed_m_s * turn.sin(), speed_m_s * turn.cos()];
         let sample = ContactSample::new(uv, 0.6).sliding(velocity_m_s).landing(0.03);
         let event = match (self.touching, touches) {
-            (false, true) => ContactEvent::begin(id, plate, Actuator(0), sample),
+            (false, true) => ContactEvent::begin(id, plate, ChannelId(0), sample),
             (true, true) => ContactEvent::moved(id, sample),
             (true, false) => ContactEvent::end(id),
             (false, false) => return Ok(()),
@@ -136,7 +136,7 @@ fn report(scene: &mut Scene, time_s: f64, event: ContactEvent) -> Result<(), Box
 }
 
 fn steel_ball_on(body: BodyId) -> ContactEvent {
-    ContactEvent::Impact(Impact::on(body).by(Material::STEEL, 0.01, 0.005).at_speed(0.8).rebounding(0.8))
+    ContactEvent::Impact(Impact::on(body).striker(Material::STEEL, 0.01, 0.005).at_speed(0.8).rebounding(0.8))
 }
 
 /// A tile of four modes; `ModalModel::load("tile.modes.json")` reads what `asperity fit` wrote.

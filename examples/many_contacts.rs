@@ -8,7 +8,7 @@
 
 use asperity::dsp::simd::Isa;
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Renderer, Scene, Surface, SurfaceId,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Extent, Renderer, Scene, Surface, SurfaceId,
     Wrap,
 };
 use asperity_surface::height_map::HeightMap;
@@ -62,7 +62,7 @@ impl Strokes {
                 ..ContactSample::default()
             };
             let event = match self.reports {
-                0 => ContactEvent::begin(id, *surface, Actuator(0), sample),
+                0 => ContactEvent::begin(id, *surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(id, sample),
             };
             self.scene.report(time_s, event)?;

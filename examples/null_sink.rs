@@ -9,7 +9,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::{NullSink, Pace};
 use asperity::surface::height_map::HeightMap;
 use asperity::{
-    Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode, Surface,
+    ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode, Surface,
 };
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let body = scene.add_body(ModalModel::new((0..64).map(mode).collect(), 0.01)?)?;
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
     let plate = Surface::new(HeightMap::flat(extent, 0.9)?, SIDE_M, SIDE_M)?;
-    let plate = scene.add_surface(plate.on(body))?;
+    let plate = scene.add_surface(plate.body(body))?;
 
     let period = Duration::from_secs_f64(BLOCK_FRAMES as f64 / RATE_HZ);
     let bare = std::thread::spawn(move || Pace::measure(period, Duration::from_secs_f64(seconds), |_| ()));
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let event = if started {
                 ContactEvent::moved(ContactId(finger), sample)
             } else {
-                ContactEvent::begin(ContactId(finger), plate, Actuator(finger as u16), sample)
+                ContactEvent::begin(ContactId(finger), plate, ChannelId(finger as u16), sample)
             };
             scene.report(time_s, event)?;
         }

@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let (x, y) = (column * PICTURE.0 + i % PICTURE.0, i / PICTURE.0);
             picture.put_pixel(x as u32, y as u32, image::Luma([grey]));
         }
-        let surface = Surface::new(noise, SIDE_M, SIDE_M)?.wraps(false).micro_relief_m(0.0).on(board);
+        let surface = Surface::new(noise, SIDE_M, SIDE_M)?.wraps(false).micro_relief_m(0.0).body(board);
         let surface = scene.add_surface(surface)?;
         let names = Names { surfaces: HashMap::from([("material".to_owned(), surface)]), ..Names::default() };
         let mut forces = Forces::new(RATE_HZ);

@@ -38,7 +38,7 @@ fn strike(
     let Engine { mut scene, mut renderer, .. } = Config::default().build()?;
     let model = shape.modes(&material, SIZE_M)?;
     let lowest = model.modes.iter().min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz)).copied();
-    let body = scene.add_body(Body::new(model).of(material))?;
+    let body = scene.add_body(Body::new(model).material(material))?;
     let blow = Impact { mass_kg: 0.002, speed_m_s: 1.0, striker: Material::WOOD, ..Impact::on(body) };
     scene.report(0.05, ContactEvent::Impact(blow))?;
 

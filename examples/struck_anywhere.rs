@@ -10,7 +10,7 @@ mod closed_forms;
 
 use asperity::files::wav::write_wav;
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel, Surface,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel, Surface,
     SurfaceFrame,
 };
 use closed_forms::{FREE_BAR, PLATE_M, bar, modes_file, plate, plate_orders};
@@ -49,8 +49,9 @@ fn play(
     let Engine { mut scene, mut renderer, .. } = Config::default().build()?;
     let body = scene.add_body(ModalModel::parse(modes)?)?;
     let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
-    let surface = Surface::flat(size_m[0], size_m[1])?.of(Material::STEEL).micro_relief_m(6e-6).frame(frame);
-    let surface = scene.add_surface(surface.on(body))?;
+    let surface =
+        Surface::flat(size_m[0], size_m[1])?.material(Material::STEEL).micro_relief_m(6e-6).frame(frame);
+    let surface = scene.add_surface(surface.body(body))?;
     let held_s = BEAT_S * places.len() as f64;
     let stroke_s = held_s + BEAT_S;
     let total_s = stroke_s + 2.0;
@@ -58,7 +59,8 @@ fn play(
     for tick in 0..(60.0 * total_s) as usize {
         let t = tick as f64 / 60.0;
         if let Some(beat) = (tick % 90 == 0).then_some(tick / 90).filter(|beat| *beat <= places.len()) {
-            scene.report(t, ContactEvent::Impact(Impact::on(body).at(places[beat.min(places.len() - 1)])))?;
+            scene
+                .report(t, ContactEvent::Impact(Impact::on(body).at_m(places[beat.min(places.len() - 1)])))?;
         }
         // A finger that rests for the fifth strike, and strokes across after it.
         let u = 0.3 + 0.6 * ((t - stroke_s) / 1.5).clamp(0.0, 1.0);
@@ -67,7 +69,7 @@ fn play(
         let first = (60.0 * (held_s - 0.2)) as usize;
         let last = (60.0 * (stroke_s + 1.5)) as usize;
         let event = match tick {
-            _ if tick == first => Some(ContactEvent::begin(finger, surface, Actuator(0), sample)),
+            _ if tick == first => Some(ContactEvent::begin(finger, surface, ChannelId(0), sample)),
             _ if tick > first && tick < last => Some(ContactEvent::moved(finger, sample)),
             _ if tick == last => Some(ContactEvent::end(finger)),
             _ => None,

@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..SandDesign::default()
     };
     let sand = Surface::new(SandSource::synchronous(&design, 1)?, SIDE_M, SIDE_M)?;
-    let surface = scene.add_surface(sand.wraps(false).on(board))?;
+    let surface = scene.add_surface(sand.wraps(false).body(board))?;
     let names = Names { surfaces: HashMap::from([("sand".to_owned(), surface)]), ..Names::default() };
     let mut forces = Forces::new(RATE_HZ);
     let options = Options { tail_s: 0.3, ..Options::default() };

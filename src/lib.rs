@@ -14,7 +14,7 @@
 //! ```
 //! use asperity::surface::height_map::HeightMap;
 //! use asperity::{
-//!     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, ModalModel, Mode, Surface,
+//!     ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, ModalModel, Mode, Surface,
 //! };
 //!
 //! let Engine { mut scene, mut renderer, .. } = Config::live(48_000.0).build()?;
@@ -23,12 +23,12 @@
 //! let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
 //! let body = scene.add_body(ModalModel::new(vec![mode], 0.01)?)?;
 //! let extent = Extent { width_m: 0.14, height_m: 0.14, relief_m: 0.0 };
-//! let plate = scene.add_surface(Surface::new(HeightMap::flat(extent, 0.8)?, 0.14, 0.14)?.on(body))?;
+//! let plate = scene.add_surface(Surface::new(HeightMap::flat(extent, 0.8)?, 0.14, 0.14)?.body(body))?;
 //!
 //! // Every physics step, on the game thread.
 //! let sample =
 //!     ContactSample { uv: [0.3, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.02, ..ContactSample::default() };
-//! scene.report(0.0, ContactEvent::begin(ContactId(1), plate, Actuator(0), sample))?;
+//! scene.report(0.0, ContactEvent::begin(ContactId(1), plate, ChannelId(0), sample))?;
 //!
 //! // Every audio callback, on the audio thread.
 //! let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
@@ -46,7 +46,7 @@
 //! | displacement and roughness maps | [`Surface::from_maps`], [`Surface::from_displacement`] |
 //! | nothing recorded yet | [`Body::stock`], [`Material::PRESETS`], [`Surface::flat`] |
 //! | a surface of your own | [`surface::height_field::HeightField`] |
-//! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
+//! | several bodies at several places | [`Config::audio`], [`Body::bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
 //! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
 //! | a sound card | [`live`] |
@@ -109,14 +109,14 @@ pub use link::tap::{ContactBlock, NoTap, Tap};
 pub use model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};
 pub use model::bad_value::BadValue;
 pub use model::body::Body;
-pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
+pub use model::bus::{AudioBus, BusId, BusLevels, MAX_BUSES};
 pub use model::click::Click;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
-    Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
+    ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
     Touching,
 };
 pub use model::excitation::{Excitation, Exciter};

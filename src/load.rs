@@ -4,7 +4,7 @@ mod change;
 mod doubts;
 pub(crate) mod edit;
 pub mod levels;
-mod made_with;
+mod loader;
 pub(crate) mod maker;
 pub(crate) mod maps;
 mod parts;
@@ -25,7 +25,7 @@ use asperity_surface::raster::Raster;
 pub use change::Changes;
 pub use edit::{Edits, MakeSurface};
 use levels::Levels;
-use maker::Maker;
+use maker::Loader;
 pub use maps::Maps;
 pub use parts::ReadSurface;
 use std::cell::RefCell;
@@ -155,7 +155,7 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
 /// say how loud they are.
 fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, FileError> {
     let maker =
-        Maker { files: overrides.files, maps: &Maps::default(), own: overrides.own, seed: 0, workers: None };
+        Loader { files: overrides.files, maps: &Maps::default(), own: overrides.own, seed: 0, workers: None };
     let is = |entry| {
         let body = maker.body(entry, &file.audio, &[], 1.0)?;
         let pascals = file.audio.get(body.bus).and_then(|bus| bus.pascals_at_full_scale);
@@ -177,7 +177,7 @@ fn assemble(
     let at = |error: FileError| error.within(file.path.display());
     let config = change(config(file, overrides, levels).map_err(at)?);
     let workers = RefCell::default();
-    let maker = Maker {
+    let maker = Loader {
         files: overrides.files,
         maps,
         own: overrides.own,
@@ -275,6 +275,6 @@ pub fn relief_from(
     longest: usize,
 ) -> Option<Raster> {
     let seed = seed.unwrap_or(Config::default().seed);
-    let maker = Maker { files, maps: &Maps::default(), own: &[], seed, workers: None };
+    let maker = Loader { files, maps: &Maps::default(), own: &[], seed, workers: None };
     maker.ground(entry).relief(&entry.source, longest)
 }

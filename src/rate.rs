@@ -125,7 +125,7 @@ impl Scene {
 struct New {
     renderer: Renderer,
     to_audio: ring::Sender<crate::link::message::Message>,
-    from_audio: ring::Receiver<crate::link::message::Dead>,
+    from_audio: ring::Receiver<crate::link::message::Retired>,
 }
 
 pub(crate) fn design(error: ConfigError) -> AddError {

@@ -7,7 +7,7 @@ use asperity::surface::height_map::HeightMap;
 use asperity::surface::raster::Raster;
 use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact,
+    Body, BodyId, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact,
     ModalModel, Mode, Renderer, Scene, Surface, SurfaceId, Touching, probe_by_name,
 };
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ fn game(sample_rate_hz: f64) -> (Scene, Renderer, BodyId, SurfaceId) {
     let raster = Raster { width: 200, height: 1, values };
     let extent = Extent { width_m: 10.0 * WAVE_M, height_m: 0.02, relief_m: 1e-4 };
     let map = HeightMap::new(&raster, extent, asperity::Wrap::Repeat).unwrap();
-    let grating = Surface::new(map, extent.width_m, 0.02).unwrap().micro_relief_m(0.0).on(bell);
+    let grating = Surface::new(map, extent.width_m, 0.02).unwrap().micro_relief_m(0.0).body(bell);
     let grating = scene.add_surface(grating).unwrap();
     (scene, renderer, bell, grating)
 }
@@ -65,7 +65,7 @@ fn stroke(
             ..ContactSample::default()
         };
         let event = if begins && step == from {
-            ContactEvent::begin(ContactId(1), on, Actuator(0), sample)
+            ContactEvent::begin(ContactId(1), on, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(1), sample)
         };
@@ -79,7 +79,7 @@ fn stroke(
 #[test]
 fn bodies_surfaces_contacts_and_ids_go_on_at_the_same_second() {
     let (mut scene, mut renderer, bell, grating) = game(44_100.0);
-    scene.set_audio_gain(0, 0.5).unwrap();
+    scene.set_audio_gain(BusId(0), 0.5).unwrap();
     stroke(&mut scene, &mut renderer, grating, 0, 50, true);
     let mut renderer = scene.at_rate(renderer, 48_000.0).unwrap().renderer;
     assert_eq!((renderer.sample_rate_hz(), renderer.position()), (48_000.0, 48_000));
@@ -112,12 +112,12 @@ fn probes_gains_buses_and_sand_are_kept_and_events_that_wait_come_at_their_secon
     let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     let mode = Mode { frequency_hz: MODE_HZ, decay_per_s: 10.0, amplitude: 0.3, phase_rad: 0.0 };
     let bell = scene.add_body(ModalModel::new(vec![mode], 0.01).unwrap()).unwrap();
-    scene.set_body_bus(bell, 1).unwrap();
+    scene.set_body_bus(bell, BusId(1)).unwrap();
     let stylus = scene.add_probe(probe_by_name("stylus").unwrap()).unwrap();
     let design = SandDesign { cells: 64, ..SandDesign::default() };
     let sand = Surface::new(SandSource::synchronous(&design, 1).unwrap(), 0.25, 0.25).unwrap();
     let sand = scene.add_surface(sand).unwrap();
-    scene.set_haptic_gain(Actuator(0), 0.0).unwrap();
+    scene.set_haptic_gain(ChannelId(0), 0.0).unwrap();
     let play = |renderer: &mut Renderer, seconds: f64| {
         let frames = (seconds * renderer.sample_rate_hz()).round() as usize;
         let [mut haptic, mut left, mut right] = [vec![0.0; frames], vec![0.0; frames], vec![0.0; frames]];
@@ -131,7 +131,7 @@ fn probes_gains_buses_and_sand_are_kept_and_events_that_wait_come_at_their_secon
     let [_, left, right] = play(&mut renderer, 0.5);
     let first = right.iter().position(|x| *x != 0.0).unwrap() as f64 / 96_000.0;
     assert!(left.iter().all(|x| *x == 0.0) && (first - 0.25).abs() < 1e-3, "struck after {first} s");
-    let touching = Touching::on(sand).felt_by(Actuator(0)).with(stylus);
+    let touching = Touching::on(sand).felt_by(ChannelId(0)).probe(stylus);
     for step in 0..30 {
         let t = 1.0 + f64::from(step) / 60.0;
         let sample = ContactSample {
@@ -150,7 +150,7 @@ fn probes_gains_buses_and_sand_are_kept_and_events_that_wait_come_at_their_secon
         let [haptic, ..] = play(&mut renderer, 1.0 / 60.0);
         assert!(haptic.iter().all(|x| *x == 0.0), "the channel is muted");
     }
-    scene.set_haptic_gain(Actuator(0), 1.0).unwrap();
+    scene.set_haptic_gain(ChannelId(0), 1.0).unwrap();
     let [haptic, ..] = play(&mut renderer, 0.2);
     assert!(haptic.iter().any(|x| *x != 0.0));
     assert_eq!(scene.stats().orphaned + scene.stats().refused + scene.stats().quarantined, 0);

@@ -4,7 +4,7 @@ use asperity::files::Memory;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
-use asperity::{Actuator, ContactEvent, ContactId, ContactSample, Engine, Impact, Renderer, Scene};
+use asperity::{ChannelId, ContactEvent, ContactId, ContactSample, Engine, Impact, Renderer, Scene};
 use std::path::Path;
 
 const SCENE: &str = r#"
@@ -55,7 +55,7 @@ impl Game {
             ..ContactSample::default()
         };
         let event = match self.step {
-            0 => ContactEvent::begin(ContactId(1), self.names.surfaces["plate"], Actuator(0), sample),
+            0 => ContactEvent::begin(ContactId(1), self.names.surfaces["plate"], ChannelId(0), sample),
             _ => ContactEvent::moved(ContactId(1), sample),
         };
         self.scene.report(t, event).unwrap();

@@ -4,8 +4,8 @@ use crate::common;
 
 use asperity::load::Overrides;
 use asperity::{
-    Actuator, AddError, AudioBus, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine,
-    Impact, Material, Refusal, Renderer, Scene, SurfaceId,
+    AddError, AudioBus, Body, BodyId, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample,
+    Engine, Impact, Material, Refusal, Renderer, Scene, SurfaceId,
 };
 use common::{bar, peak, plate};
 use std::path::Path;
@@ -58,8 +58,8 @@ fn render(renderer: &mut Renderer, buses: usize, frames: usize, block: usize) ->
 #[test]
 fn of_two_bodies_on_two_buses_the_one_that_is_not_struck_leaves_its_bus_at_exactly_zero() {
     let (mut scene, mut renderer) = engine(2);
-    let struck = scene.add_body(Body::new(bar()).of(Material::CERAMIC)).unwrap();
-    scene.add_body(Body::new(bar()).of(Material::GLASS).on_bus(1)).unwrap();
+    let struck = scene.add_body(Body::new(bar()).material(Material::CERAMIC)).unwrap();
+    scene.add_body(Body::new(bar()).material(Material::GLASS).bus(BusId(1))).unwrap();
     scene.report(0.0, strike(struck, 1.0)).unwrap();
     let heard = render(&mut renderer, 2, 44_100, 256);
     assert!(peak(&heard[0]) > 0.01);
@@ -77,11 +77,11 @@ fn without_limiters_the_buses_add_up_to_what_a_single_one_carries() {
         let (mut scene, mut renderer) = engine(buses);
         for index in 0..3 {
             let material = [Material::CERAMIC, Material::GLASS, Material::WOOD][index];
-            let body = scene.add_body(Body::new(bar()).of(material).on_bus(index % buses)).unwrap();
-            let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
+            let body = scene.add_body(Body::new(bar()).material(material).bus(BusId(index % buses))).unwrap();
+            let surface = scene.add_surface(plate(0.9).body(body)).unwrap();
             let contact = ContactId(index as u64);
             let (sample, t) = (touch(0.1 + 0.2 * index as f64), 0.02 * index as f64);
-            scene.report(t, ContactEvent::begin(contact, surface, Actuator(0), sample)).unwrap();
+            scene.report(t, ContactEvent::begin(contact, surface, ChannelId(0), sample)).unwrap();
             scene.report(t + 0.01, strike(body, 0.5)).unwrap();
         }
         render(&mut renderer, buses, 20_000, 256)
@@ -102,7 +102,7 @@ fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives
         scene.report(0.0, strike(body, 1.0)).unwrap();
         let mut heard = render(&mut renderer, 2, 4096, block);
         if moves {
-            scene.set_body_bus(body, 1).unwrap();
+            scene.set_body_bus(body, BusId(1)).unwrap();
         }
         let after = render(&mut renderer, 2, 16_384, block);
         heard.iter_mut().zip(after).for_each(|(bus, after)| bus.extend(after));
@@ -127,37 +127,37 @@ fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives
 #[test]
 fn a_bus_that_is_not_there_is_refused_with_the_number_there_are() {
     let (mut scene, _renderer) = engine(2);
-    let refused = scene.add_body(Body::new(bar()).on_bus(2)).unwrap_err();
+    let refused = scene.add_body(Body::new(bar()).bus(BusId(2))).unwrap_err();
     assert_eq!(refused, AddError::UnknownBus { bus: 2, buses: 2 });
     assert_eq!(refused.to_string(), "bus: 2 is refused; must be below 2, the number of buses under audio");
     let body = scene.add_body(bar()).unwrap();
-    assert!(scene.set_body_bus(body, 7).is_err());
+    assert!(scene.set_body_bus(body, BusId(7)).is_err());
 }
 
 #[test]
 fn every_call_refuses_the_id_of_what_has_gone_although_its_place_is_used_again() {
     let (mut scene, mut renderer) = engine(1);
     let old_body = scene.add_body(bar()).unwrap();
-    let old_surface = scene.add_surface(plate(0.5).on(old_body)).unwrap();
+    let old_surface = scene.add_surface(plate(0.5).body(old_body)).unwrap();
     scene.remove_surface(old_surface).unwrap();
     scene.remove_body(old_body).unwrap();
     render(&mut renderer, 1, 8192, 256);
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(plate(0.5).on(body)).unwrap();
+    let surface = scene.add_surface(plate(0.5).body(body)).unwrap();
     assert_ne!((old_body, old_surface), (body, surface));
     assert_eq!(old_body.to_bits() as u32, body.to_bits() as u32, "the place is the same");
     let unknown = [
         scene.remove_body(old_body),
         scene.replace_body(old_body, bar()),
-        scene.set_body_bus(old_body, 0),
+        scene.set_body_bus(old_body, BusId(0)),
         scene.remove_surface(old_surface),
         scene.replace_surface(old_surface, plate(0.1)),
-        scene.add_surface(plate(0.1).on(old_body)).map(|_| ()),
+        scene.add_surface(plate(0.1).body(old_body)).map(|_| ()),
     ];
     for answer in unknown {
         assert!(matches!(answer, Err(AddError::Unknown(_))), "{answer:?}");
     }
-    let begin = |surface: SurfaceId| ContactEvent::begin(ContactId(1), surface, Actuator(0), touch(0.3));
+    let begin = |surface: SurfaceId| ContactEvent::begin(ContactId(1), surface, ChannelId(0), touch(0.3));
     assert_eq!(scene.report(0.0, begin(old_surface)).unwrap_err().reason, Refusal::UnknownSurface);
     assert_eq!(scene.report(0.0, strike(old_body, 1.0)).unwrap_err().reason, Refusal::UnknownBody);
     scene.report(0.0, begin(surface)).unwrap();
@@ -171,14 +171,14 @@ fn every_call_refuses_the_id_of_what_has_gone_although_its_place_is_used_again()
 fn strokes_on_the_surface_of_a_body_that_has_gone_do_not_ring_the_one_that_took_its_place() {
     let (mut scene, mut renderer) = engine(1);
     let gone = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(plate(0.9).on(gone)).unwrap();
+    let surface = scene.add_surface(plate(0.9).body(gone)).unwrap();
     scene.remove_body(gone).unwrap();
     render(&mut renderer, 1, 8192, 256);
     scene.add_body(bar()).unwrap();
     for step in 0..30 {
         let (time_s, sample) = (0.2 + f64::from(step) / 60.0, touch(0.1 + 0.01 * f64::from(step)));
         let event = match step {
-            0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+            0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
             _ => ContactEvent::moved(ContactId(1), sample),
         };
         scene.report(time_s, event).unwrap();
@@ -196,7 +196,7 @@ fn a_body_is_heard_by_four_listeners_each_at_a_gain_of_its_own() {
         let (mut scene, mut renderer) = engine(4);
         let body = scene.add_body(bar()).unwrap();
         for (bus, gain) in gains.iter().enumerate().skip(1).filter(|_| sends) {
-            scene.set_body_send(body, bus, *gain).unwrap();
+            scene.set_body_send(body, BusId(bus), *gain).unwrap();
         }
         // They are there within a tenth of a second.
         render(&mut renderer, 4, 8192, 256);
@@ -219,7 +219,7 @@ fn a_listener_that_comes_and_goes_makes_no_step_and_any_split_gives_the_same_bit
         scene.report(0.0, strike(body, 1.0)).unwrap();
         let mut heard = render(&mut renderer, 2, 4096, block);
         for gain in [0.5, 0.0].into_iter().filter(|_| sends) {
-            scene.set_body_send(body, 1, gain).unwrap();
+            scene.set_body_send(body, BusId(1), gain).unwrap();
             let after = render(&mut renderer, 2, 8192, block);
             heard.iter_mut().zip(after).for_each(|(bus, after)| bus.extend(after));
         }
@@ -238,17 +238,17 @@ fn a_listener_that_comes_and_goes_makes_no_step_and_any_split_gives_the_same_bit
 fn a_body_has_four_further_listeners_and_its_own_bus_is_none_of_them() {
     let (mut scene, _renderer) = engine(7);
     let body = scene.add_body(bar()).unwrap();
-    assert!(scene.set_body_send(body, 0, 0.5).unwrap_err().to_string().contains("further bus"));
-    assert!(scene.set_body_send(body, 1, f64::NAN).is_err());
-    assert!(scene.set_body_send(body, 7, 1.0).is_err());
-    (1..5).for_each(|bus| scene.set_body_send(body, bus, 0.5).unwrap());
+    assert!(scene.set_body_send(body, BusId(0), 0.5).unwrap_err().to_string().contains("further bus"));
+    assert!(scene.set_body_send(body, BusId(1), f64::NAN).is_err());
+    assert!(scene.set_body_send(body, BusId(7), 1.0).is_err());
+    (1..5).for_each(|bus| scene.set_body_send(body, BusId(bus), 0.5).unwrap());
     let full = AddError::Full { kind: "sends of a body", capacity: 4 };
-    assert_eq!(scene.set_body_send(body, 5, 0.5), Err(full));
-    scene.set_body_send(body, 3, 0.0).unwrap();
-    scene.set_body_send(body, 5, 0.5).unwrap();
+    assert_eq!(scene.set_body_send(body, BusId(5), 0.5), Err(full));
+    scene.set_body_send(body, BusId(3), 0.0).unwrap();
+    scene.set_body_send(body, BusId(5), 0.5).unwrap();
     // Another bus of its own ends them.
-    scene.set_body_bus(body, 6).unwrap();
-    (1..5).for_each(|bus| scene.set_body_send(body, bus, 0.5).unwrap());
+    scene.set_body_bus(body, BusId(6)).unwrap();
+    (1..5).for_each(|bus| scene.set_body_send(body, BusId(bus), 0.5).unwrap());
 }
 
 #[test]

@@ -4,8 +4,8 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact,
-    Material, Renderer, Scene, SilentBecause, Stats, Stock, SurfaceId,
+    ActuatorSettings, Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine,
+    Impact, Material, Renderer, Scene, SilentBecause, Stats, Stock, SurfaceId,
 };
 use common::{SIDE_M, peak, plate, rms};
 
@@ -27,7 +27,7 @@ impl Game {
         let config = Config { actuators: vec![si], ..common::raw_live(RATE_HZ) };
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let block = scene.add_body(block()).unwrap();
-        let surface = scene.add_surface(plate(0.8).on(block)).unwrap();
+        let surface = scene.add_surface(plate(0.8).body(block)).unwrap();
         Self { scene, renderer, block, surface, tick: 0 }
     }
 
@@ -51,7 +51,7 @@ impl Game {
     fn stroke(&mut self, contact: u64, speed_m_s: f64, begins: bool) {
         let sample = along(self.now_s(), speed_m_s);
         let event = if begins {
-            ContactEvent::begin(ContactId(contact), self.surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(contact), self.surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(contact), sample)
         };
@@ -86,7 +86,7 @@ fn block() -> Body {
 }
 
 fn blow(body: BodyId, speed_m_s: f64) -> ContactEvent {
-    ContactEvent::Impact(Impact::on(body).by(Material::STEEL, 0.01, 0.005).at_speed(speed_m_s))
+    ContactEvent::Impact(Impact::on(body).striker(Material::STEEL, 0.01, 0.005).at_speed(speed_m_s))
 }
 
 fn along(time_s: f64, speed_m_s: f64) -> ContactSample {
@@ -166,7 +166,7 @@ fn a_body_that_is_told_to_strike_itself_sounds_as_struck_once() {
     let block = game.block;
     let heard = game.run(30, |game, tick| {
         if tick == 0 {
-            let impact = Impact::on(block).by(Material::STEEL, 0.01, 0.005).at_speed(1.0);
+            let impact = Impact::on(block).striker(Material::STEEL, 0.01, 0.005).at_speed(1.0);
             game.report(ContactEvent::Impact(Impact { other: Some(block), ..impact }));
         }
     });
@@ -177,7 +177,7 @@ fn a_body_that_is_told_to_strike_itself_sounds_as_struck_once() {
 fn no_mass_and_infinite_mass_are_refused_in_words() {
     let mut game = Game::new();
     for mass_kg in [0.0, f64::INFINITY, f64::NAN, -1.0] {
-        let impact = Impact::on(game.block).by(Material::STEEL, mass_kg, 0.005).at_speed(1.0);
+        let impact = Impact::on(game.block).striker(Material::STEEL, mass_kg, 0.005).at_speed(1.0);
         let error = game.scene.report(0.0, ContactEvent::Impact(impact)).unwrap_err().to_string();
         assert!(error.contains("mass_kg"), "{error}");
     }
@@ -237,7 +237,7 @@ fn haptics_after_ten_minutes_are_those_of_the_first() {
             let (way, sign) = if turns.is_multiple_of(2) { (t, 1.0) } else { (1.0 - t, -1.0) };
             let sample = ContactSample::new([0.1 + 0.1 * way / SIDE_M, 0.5], 0.6).sliding([0.1 * sign, 0.0]);
             let event = if base + tick == 0 {
-                ContactEvent::begin(ContactId(1), game.surface, Actuator(0), sample)
+                ContactEvent::begin(ContactId(1), game.surface, ChannelId(0), sample)
             } else {
                 ContactEvent::moved(ContactId(1), sample)
             };
@@ -276,7 +276,7 @@ fn places_that_change_at_30_hz_and_are_told_at_120_are_felt_as_a_stroke() {
                 let at_s = if stair { (now_s * 30.0).floor() / 30.0 } else { now_s };
                 let sample = along(at_s, 0.1);
                 let event = if tick == 0 && half == 0 {
-                    ContactEvent::begin(ContactId(1), game.surface, Actuator(0), sample)
+                    ContactEvent::begin(ContactId(1), game.surface, ChannelId(0), sample)
                 } else {
                     ContactEvent::moved(ContactId(1), sample)
                 };
@@ -337,10 +337,10 @@ fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
 #[test]
 fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_a_table_is_muted() {
     let mut game = Game::new();
-    let begin = ContactEvent::begin(ContactId(1), game.surface, Actuator(1), along(0.0, 0.1));
+    let begin = ContactEvent::begin(ContactId(1), game.surface, ChannelId(1), along(0.0, 0.1));
     let error = game.scene.report(0.0, begin).unwrap_err().to_string();
     assert!(error.contains('1'), "{error}");
-    game.scene.set_haptic_gain(Actuator(0), 0.0).unwrap();
+    game.scene.set_haptic_gain(ChannelId(0), 0.0).unwrap();
     let (heard, felt) = game.run(60, |game, tick| game.stroke(1, 0.1, tick == 0));
     assert!(peak(&felt[12 * TICK..]) < 1e-12 && peak(&heard) > 0.0);
 }

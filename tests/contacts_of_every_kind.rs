@@ -4,9 +4,9 @@ use crate::common;
 
 use asperity::files::contact_log::LogEvent;
 use asperity::{
-    Actuator, ActuatorSettings, AudioBus, Body, BodyId, Config, ContactBlock, ContactEvent, ContactId,
-    ContactSample, Engine, Impact, Material, NoTap, PROBE_PRESETS, Probe, ProbeId, Refusal, Renderer, Scene,
-    Tap, Touching, probe_by_name,
+    ActuatorSettings, AudioBus, Body, BodyId, BusId, ChannelId, Config, ContactBlock, ContactEvent,
+    ContactId, ContactSample, Engine, Impact, Material, NoTap, PROBE_PRESETS, Probe, ProbeId, Refusal,
+    Renderer, Scene, Tap, Touching, probe_by_name,
 };
 use asperity_dsp::hertz::{Elastic, HertzContact, pulse_shape};
 use asperity_dsp::mobility::Mobility;
@@ -67,7 +67,7 @@ fn each_of_several_probes_in_one_scene_feels_what_it_feels_alone_to_the_bit() {
     let alone = names.map(|name| {
         let (mut scene, mut renderer) = build(Config { probe: preset(name), ..config() });
         let surface = scene.add_surface(plate(0.7)).unwrap();
-        report(&mut scene, Touching::on(surface).felt_by(Actuator(0)), 1);
+        report(&mut scene, Touching::on(surface).felt_by(ChannelId(0)), 1);
         let [felt, ..] = render(&mut renderer, 16_000, 256, &mut NoTap);
         felt
     });
@@ -78,7 +78,7 @@ fn each_of_several_probes_in_one_scene_feels_what_it_feels_alone_to_the_bit() {
     for line in log.lines {
         for (index, probe) in probes.into_iter().enumerate() {
             let contact = ContactId(1 + index as u64);
-            let touching = Touching::on(surface).felt_by(Actuator(index as u16)).with(probe);
+            let touching = Touching::on(surface).felt_by(ChannelId(index as u16)).probe(probe);
             let event = match line.event.clone() {
                 LogEvent::Begin { sample, .. } => ContactEvent::begin_with(contact, touching, sample),
                 LogEvent::Move { sample, .. } => ContactEvent::moved(contact, sample),
@@ -171,7 +171,7 @@ fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
                 let event = match step {
                     0 => ContactEvent::begin_with(
                         ContactId(1),
-                        Touching::on(surface).felt_by(Actuator(0)).with(own),
+                        Touching::on(surface).felt_by(ChannelId(0)).probe(own),
                         sample,
                     ),
                     _ => ContactEvent::moved(ContactId(1), sample),
@@ -191,15 +191,15 @@ fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
 
 /// Two bodies alike, one on each bus.
 fn pen_and_plate(scene: &mut Scene) -> [BodyId; 2] {
-    [0, 1].map(|bus| scene.add_body(Body::new(bar()).on_bus(bus)).unwrap())
+    [0, 1].map(|bus| scene.add_body(Body::new(bar()).bus(BusId(bus))).unwrap())
 }
 
 #[test]
 fn a_held_pen_rings_from_the_stroke_with_the_impulses_of_the_plate_and_the_opposite_sign() {
     let (mut scene, mut renderer) = build(config());
     let [wood, pen] = pen_and_plate(&mut scene);
-    let surface = scene.add_surface(plate(0.9).on(wood)).unwrap();
-    report(&mut scene, Touching::on(surface).felt_by(Actuator(0)).held_by(pen), 1);
+    let surface = scene.add_surface(plate(0.9).body(wood)).unwrap();
+    report(&mut scene, Touching::on(surface).felt_by(ChannelId(0)).held_by(pen), 1);
     let [felt, _, _, plate, held] = render(&mut renderer, 16_000, 256, &mut NoTap);
     assert!(peak(&felt) > 0.0 && peak(&plate) > 1e-5);
     assert!(plate.iter().zip(&held).all(|(plate, held)| *plate == -*held), "not equal and opposite");
@@ -252,13 +252,13 @@ fn pulse_spectrum(frequency_hz: f64, blow: &Impact) -> f64 {
 
 #[test]
 fn a_strike_that_names_a_channel_is_felt_there_and_one_that_names_nobody_is_only_heard() {
-    let felt = |actuator: Option<Actuator>| {
+    let felt = |actuator: Option<ChannelId>| {
         let (mut scene, mut renderer) = build(config());
         let [wood, _] = pen_and_plate(&mut scene);
         scene.report(0.01, ContactEvent::Impact(Impact { actuator, ..Impact::on(wood) })).unwrap();
         render(&mut renderer, 20_000, 256, &mut NoTap).map(|x| peak(&x) > 0.0)
     };
-    assert_eq!(felt(Some(Actuator(2))), [false, false, true, true, false]);
+    assert_eq!(felt(Some(ChannelId(2))), [false, false, true, true, false]);
     assert_eq!(felt(None), [false, false, false, true, false]);
 }
 
@@ -268,8 +268,8 @@ fn blows_and_held_strokes_have_the_same_bits_in_blocks_of_any_size() {
         let (mut scene, mut renderer) = build(config());
         let [wood, pen] = pen_and_plate(&mut scene);
         let stylus = scene.add_probe(preset("stylus")).unwrap();
-        let surface = scene.add_surface(plate(0.6).on(wood)).unwrap();
-        let touching = Touching::on(surface).felt_by(Actuator(1)).held_by(pen).with(stylus).gain(0.7);
+        let surface = scene.add_surface(plate(0.6).body(wood)).unwrap();
+        let touching = Touching::on(surface).felt_by(ChannelId(1)).held_by(pen).probe(stylus).gain(0.7);
         report(&mut scene, touching, 1);
         for step in 0..3 {
             let blow = Impact { holder: Some(pen), gain: 0.5, ..Impact::on(wood) };
@@ -286,16 +286,16 @@ fn blows_and_held_strokes_have_the_same_bits_in_blocks_of_any_size() {
 
 #[test]
 fn a_contact_without_a_channel_is_heard_as_it_was_and_felt_by_nobody() {
-    let game = |actuator: Option<Actuator>, gain: f64| {
+    let game = |actuator: Option<ChannelId>, gain: f64| {
         let (mut scene, mut renderer) = build(config());
         let [wood, _] = pen_and_plate(&mut scene);
-        let surface = scene.add_surface(plate(0.9).on(wood)).unwrap();
+        let surface = scene.add_surface(plate(0.9).body(wood)).unwrap();
         let mut touching = Touching::on(surface).gain(gain);
         touching.actuator = actuator;
         report(&mut scene, touching, 1);
         render(&mut renderer, 16_000, 256, &mut NoTap)
     };
-    let ([felt, _, _, heard, _], [nothing, _, _, same, _]) = (game(Some(Actuator(0)), 1.0), game(None, 1.0));
+    let ([felt, _, _, heard, _], [nothing, _, _, same, _]) = (game(Some(ChannelId(0)), 1.0), game(None, 1.0));
     assert!(peak(&felt) > 0.0 && peak(&heard) > 0.0);
     assert!(nothing.iter().all(|x| *x == 0.0) && same == heard);
     let [_, _, _, louder, _] = game(None, 2.0);
@@ -307,7 +307,7 @@ fn a_contact_without_a_channel_is_heard_as_it_was_and_felt_by_nobody() {
 fn a_probe_a_holder_or_a_channel_that_is_not_there_is_refused() {
     let (mut scene, _renderer) = build(config());
     let [wood, pen] = pen_and_plate(&mut scene);
-    let surface = scene.add_surface(plate(0.5).on(wood)).unwrap();
+    let surface = scene.add_surface(plate(0.5).body(wood)).unwrap();
     let sample = ContactSample {
         uv: [0.1, 0.1],
         velocity_m_s: None,
@@ -319,8 +319,8 @@ fn a_probe_a_holder_or_a_channel_that_is_not_there_is_refused() {
         scene.report(0.0, ContactEvent::begin_with(ContactId(1), touching, sample)).unwrap_err().reason
     };
     let here = Touching::on(surface);
-    assert_eq!(refused(here.with(ProbeId::from_bits(1 << 32))), Refusal::UnknownProbe);
-    assert_eq!(refused(here.felt_by(Actuator(3))), Refusal::UnknownActuator { index: 3, channels: 3 });
+    assert_eq!(refused(here.probe(ProbeId::from_bits(1 << 32))), Refusal::UnknownProbe);
+    assert_eq!(refused(here.felt_by(ChannelId(3))), Refusal::UnknownActuator { index: 3, channels: 3 });
     assert!(matches!(refused(here.gain(-1.0)), Refusal::BadValue(_)));
     assert!(matches!(refused(here.importance(f64::NAN)), Refusal::BadValue(_)));
     scene.remove_body(pen).unwrap();

@@ -4,8 +4,8 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, AudioBus, Body, Config, ContactEvent, ContactId, ContactSample, Engine,
-    Excitation, Integrator, Material, ModalModel, Mode, ProbeId, Quantity, SurfaceId, Touching,
+    ActuatorSettings, AudioBus, Body, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample,
+    Engine, Excitation, Integrator, Material, ModalModel, Mode, ProbeId, Quantity, SurfaceId, Touching,
     probe_by_name,
 };
 use asperity_dsp::rng::Rng;
@@ -94,10 +94,10 @@ fn render(game: &Game, setting: &Setting, seed: u64, plays: impl Fn(usize) -> bo
         .collect();
     let surfaces: Vec<SurfaceId> = (0..count)
         .map(|i| {
-            let body = Body::new(ringing(i as u64)).of(Material::CERAMIC).on_bus(i);
+            let body = Body::new(ringing(i as u64)).material(Material::CERAMIC).bus(BusId(i));
             let ground = grating(1e-3 + 0.4e-3 * (i / setting.shared_by) as f64, 3e-5).micro_relief_m(1e-5);
             let body = scene.add_body(body).unwrap();
-            scene.add_surface(ground.on(body).excitation(Excitation::BOTH)).unwrap()
+            scene.add_surface(ground.body(body).excitation(Excitation::BOTH)).unwrap()
         })
         .collect();
     let mut due: Vec<(f64, usize, Step)> = Vec::new();
@@ -114,7 +114,7 @@ fn render(game: &Game, setting: &Setting, seed: u64, plays: impl Fn(usize) -> bo
         while let Some((t, contact, step)) = due.get(next).filter(|(t, ..)| t * rate_hz < end as f64) {
             let id = ContactId(1 + *contact as u64);
             let mut touching = Touching::on(surfaces[*contact / setting.shared_by * setting.shared_by])
-                .felt_by(Actuator(*contact as u16));
+                .felt_by(ChannelId(*contact as u16));
             touching.probe = probes[*contact];
             scene
                 .report(

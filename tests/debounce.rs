@@ -21,7 +21,7 @@ fn low_body() -> ModalModel {
 fn take(log: &ContactLog) -> Render {
     let asperity::Engine { mut scene, renderer, .. } = si_config().build().unwrap();
     let body = scene.add_body(low_body()).unwrap();
-    let surface = scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap();
+    let surface = scene.add_surface(grating(2e-3, 2e-5).body(body)).unwrap();
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),

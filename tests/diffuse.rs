@@ -30,7 +30,7 @@ fn three_bands() -> ModalModel {
 fn struck(model: &ModalModel, seed: u64, impacts: &[(f64, f64)], block_frames: usize) -> Vec<f32> {
     let config = Config { seed, culling: None, ..Config::default() };
     let Engine { mut scene, renderer, .. } = config.build().unwrap();
-    let body = scene.add_body(Body::new(model.clone()).of(Material::STEEL)).unwrap();
+    let body = scene.add_body(Body::new(model.clone()).material(Material::STEEL)).unwrap();
     let lines = impacts.iter().map(|(t, speed)| {
         format!(
             "{{\"t\":{t},\"event\":\"impact\",\"body\":\"b\",\"speed_m_s\":{speed},\"mass_kg\":0.01,\"radius_m\":0.005,\"striker\":\"steel\"}}\n"
@@ -67,7 +67,7 @@ fn any_blocks_give_the_same_bits_for_strikes_and_for_strokes() {
     let stroked = |block_frames: usize| {
         let Engine { mut scene, renderer, .. } = si_config().build().unwrap();
         let body = scene.add_body(three_bands()).unwrap();
-        let surface = scene.add_surface(plate(0.5).on(body)).unwrap();
+        let surface = scene.add_surface(plate(0.5).body(body)).unwrap();
         let names = Names { surfaces: HashMap::from([("s".to_owned(), surface)]), ..Names::default() };
         let log = stroke(common::SIDE_M, 0.1, 0.6, 0.5);
         let options = Options { block_frames, tail_s: 0.2, clock_s: None };

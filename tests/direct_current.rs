@@ -21,7 +21,7 @@ fn bending() -> ModalModel {
 fn heard(roughness: f64, speed_m_s: f64, excitation: Excitation) -> Vec<f32> {
     let asperity::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(bending()).unwrap();
-    let surface = scene.add_surface(plate(roughness).on(body).excitation(excitation)).unwrap();
+    let surface = scene.add_surface(plate(roughness).body(body).excitation(excitation)).unwrap();
     let names = Names { surfaces: HashMap::from([("s".to_owned(), surface)]), ..Names::default() };
     let log = stroke(common::SIDE_M, speed_m_s, 1.0, 1.5);
     let take = offline::render(scene, renderer, &log, &names, &Options::default()).unwrap();

@@ -2,7 +2,7 @@
 
 use asperity::dsp::tangential::{FORCE_EXPONENT, STIFFNESS_N_M};
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Engine, Quantity, Surface,
+    ActuatorSettings, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Quantity, Surface,
 };
 
 fn stroke(surface: Surface, highpass_hz: f64, speed_m_s: f64, normal_force_n: f64, block: usize) -> Vec<f32> {
@@ -20,7 +20,7 @@ fn stroke(surface: Surface, highpass_hz: f64, speed_m_s: f64, normal_force_n: f6
         let sample =
             ContactSample::new([0.1 + speed_m_s * t / 0.5, 0.5], normal_force_n).sliding([speed_m_s, 0.0]);
         let event = match step {
-            0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+            0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
             _ => ContactEvent::moved(ContactId(1), sample),
         };
         scene.report(t, event).unwrap();

@@ -4,14 +4,14 @@
 use crate::common;
 
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Refusal, Renderer, Scene, SurfaceId,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Refusal, Renderer, Scene, SurfaceId,
 };
 use common::{bar, plate};
 
 fn engine(config: Config) -> (Scene, Renderer, SurfaceId) {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(plate(0.8).on(body)).unwrap();
+    let surface = scene.add_surface(plate(0.8).body(body)).unwrap();
     (scene, renderer, surface)
 }
 
@@ -38,7 +38,7 @@ fn run(renderer: &mut Renderer, frames: usize) -> f32 {
 fn bad_numbers_are_handed_back_with_the_name_of_their_field() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
     let contact = ContactId(1);
-    scene.report(0.0, ContactEvent::begin(contact, surface, Actuator(0), sample(0.1))).unwrap();
+    scene.report(0.0, ContactEvent::begin(contact, surface, ChannelId(0), sample(0.1))).unwrap();
     for bad in [f64::NAN, f64::INFINITY] {
         let event = ContactEvent::moved(contact, ContactSample { normal_force_n: bad, ..sample(0.1) });
         let refused = scene.report(0.01, event).unwrap_err();
@@ -51,7 +51,7 @@ fn bad_numbers_are_handed_back_with_the_name_of_their_field() {
     scene.report(0.02, ContactEvent::moved(contact, sample(0.11))).unwrap();
     let backwards = scene.report(0.01, ContactEvent::end(contact)).unwrap_err();
     assert!(matches!(backwards.reason, Refusal::TimeBackwards { .. }));
-    let elsewhere = ContactEvent::begin(ContactId(2), surface, Actuator(7), sample(0.1));
+    let elsewhere = ContactEvent::begin(ContactId(2), surface, ChannelId(7), sample(0.1));
     let refused = scene.report(0.03, elsewhere).unwrap_err();
     assert_eq!(refused.to_string(), "actuator: 7 is refused; must be below 1, the number of actuators");
     run(&mut renderer, 4096);
@@ -63,7 +63,7 @@ fn a_lorry_and_a_bullet_count_as_the_limit_and_why_silent_asks_about_the_unit() 
     let (mut scene, mut renderer, surface) = engine(Config::default());
     let contact = ContactId(1);
     let lorry = ContactSample { normal_force_n: 1e300, ..sample(0.1) };
-    scene.report(0.0, ContactEvent::begin(contact, surface, Actuator(0), lorry)).unwrap();
+    scene.report(0.0, ContactEvent::begin(contact, surface, ChannelId(0), lorry)).unwrap();
     for step in 1..30 {
         let fast = ContactSample { normal_force_n: 2e4, ..sample(0.1 + 0.01 * f64::from(step)) };
         scene
@@ -80,7 +80,7 @@ fn a_thousand_contacts_leave_sixty_four_sounding() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
     for contact in 0..1000 {
         let event =
-            ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample(contact as f64 * 0.01));
+            ContactEvent::begin(ContactId(contact), surface, ChannelId(0), sample(contact as f64 * 0.01));
         scene.report(0.0, event).unwrap();
     }
     run(&mut renderer, 2048);
@@ -93,7 +93,7 @@ fn a_flood_of_a_million_events_a_second_is_bounded_and_every_event_is_accounted_
     let (mut scene, mut renderer, surface) = engine(Config::default());
     let contacts = 10u64;
     for contact in 0..contacts {
-        let event = ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample(0.1));
+        let event = ContactEvent::begin(ContactId(contact), surface, ChannelId(0), sample(0.1));
         scene.report(0.0, event).unwrap();
     }
     let (mut reported, mut handed_back, mut peak) = (contacts, 0u64, 0.0f32);
@@ -118,7 +118,7 @@ fn a_flood_of_a_million_events_a_second_is_bounded_and_every_event_is_accounted_
 fn without_rendering_the_newest_moves_are_kept_and_the_rest_is_counted() {
     let (mut scene, mut renderer, surface) = engine(Config { queue_capacity: 64, ..Config::default() });
     let contact = ContactId(1);
-    scene.report(0.0, ContactEvent::begin(contact, surface, Actuator(0), sample(0.1))).unwrap();
+    scene.report(0.0, ContactEvent::begin(contact, surface, ChannelId(0), sample(0.1))).unwrap();
     for step in 1..10_000 {
         let time_s = f64::from(step) * 1e-3;
         scene.report(time_s, ContactEvent::moved(contact, sample(0.1 + time_s))).unwrap();
@@ -134,7 +134,7 @@ fn a_full_queue_hands_the_event_back() {
     let (mut scene, mut renderer, surface) = engine(Config { queue_capacity: 8, ..Config::default() });
     let mut refused = 0;
     for contact in 0..100 {
-        let event = ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample(0.1));
+        let event = ContactEvent::begin(ContactId(contact), surface, ChannelId(0), sample(0.1));
         if let Err(error) = scene.report(0.0, event) {
             assert_eq!((error.reason, error.event), (Refusal::QueueFull, event));
             refused += 1;
@@ -149,7 +149,7 @@ fn a_full_queue_hands_the_event_back() {
 #[test]
 fn a_contact_whose_end_was_lost_fades_and_comes_back_with_its_next_move() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
-    scene.report(0.0, ContactEvent::begin(ContactId(1), surface, Actuator(0), sample(0.1))).unwrap();
+    scene.report(0.0, ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample(0.1))).unwrap();
     run(&mut renderer, 8_000);
     assert_eq!(scene.stats().contacts, 1);
     run(&mut renderer, 8_000);

@@ -4,7 +4,7 @@
 use crate::common;
 
 use asperity::dsp::simd::Level;
-use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Isa};
+use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Isa};
 use common::{bar, grating};
 
 /// Heard and felt of one stroke and one strike, from an engine built with this kernel, or with the
@@ -12,10 +12,10 @@ use common::{bar, grating};
 fn render(kernel: Option<Isa>, block: usize) -> (Isa, Vec<f32>, Vec<f32>) {
     let Engine { mut scene, mut renderer, .. } = Config { kernel, ..Config::default() }.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(grating(2e-3, 5e-5).on(body)).unwrap();
+    let surface = scene.add_surface(grating(2e-3, 5e-5).body(body)).unwrap();
     scene.report(0.01, ContactEvent::Impact(Impact::on(body))).unwrap();
     let sample = |t: f64| ContactSample::new([0.1 + t, 0.5], 1.0).sliding([0.14, 0.0]);
-    let begin = ContactEvent::begin(ContactId(1), surface, Actuator(0), sample(0.0));
+    let begin = ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample(0.0));
     scene.report(0.02, begin).unwrap();
     for step in 1..30 {
         let t = f64::from(step) / 60.0;

@@ -4,7 +4,7 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, ClockMode, Config, ContactEvent, ContactId, ContactSample, Excitation,
+    ActuatorSettings, ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Excitation,
     Impact, Material, ModalModel, Mode, Quantity,
 };
 use asperity_dsp::rng::Rng;
@@ -126,7 +126,7 @@ fn one_micro_collision_is_heard_within_two_samples_after_it_is_felt() {
             let asperity::Engine { mut scene, mut renderer, .. } =
                 Config { actuators, ..Config::default() }.build().unwrap();
             let body = scene.add_body(tick()).unwrap();
-            let flat = plate(0.5).micro_relief_m(0.0).on(body).excitation(excitation);
+            let flat = plate(0.5).micro_relief_m(0.0).body(body).excitation(excitation);
             let surface = scene.add_surface(flat).unwrap();
             let sample = ContactSample {
                 uv: [0.5, 0.5],
@@ -135,7 +135,7 @@ fn one_micro_collision_is_heard_within_two_samples_after_it_is_felt() {
                 closing_m_s: 0.1,
                 ..ContactSample::default()
             };
-            let event = ContactEvent::begin(ContactId(1), surface, Actuator(0), sample);
+            let event = ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample);
             scene.report(begin as f64 / RATE_HZ, event).unwrap();
             let (mut felt, mut heard) = (vec![0.0f32; 4096], vec![0.0f32; 4096]);
             renderer.render(&mut [&mut felt], &mut [&mut heard]);

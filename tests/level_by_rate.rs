@@ -39,7 +39,7 @@ fn levels(case: &Case, rate_hz: f64) -> (f64, f64, u64) {
         let config = Config { sample_rate_hz: rate_hz, seed, probe, actuators, ..Config::default() };
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(body()).unwrap();
-        let surface = scene.add_surface((case.surface)().on(body).excitation(case.excitation)).unwrap();
+        let surface = scene.add_surface((case.surface)().body(body).excitation(case.excitation)).unwrap();
         let names = Names { surfaces: HashMap::from([("s".to_owned(), surface)]), ..Names::default() };
         let log = stroke(SIDE_M, case.speed_m_s, case.force_n, 0.4);
         let take = offline::render(scene, renderer, &log, &names, &Options::default()).unwrap();

@@ -4,7 +4,7 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, BodyId, Config, ContactEvent, ContactId, ContactSample, Impact, Material,
+    ActuatorSettings, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Impact, Material,
     Renderer, Scene, Stats, SurfaceId,
 };
 use common::{SIDE_M, bar, peak, plate, rms};
@@ -98,7 +98,7 @@ fn play(what: &str, frames: &[Vec<Tick>]) -> Stats {
             let event = if begun {
                 ContactEvent::moved(ContactId(1), sample)
             } else {
-                ContactEvent::begin(ContactId(1), game.surface, Actuator(0), sample)
+                ContactEvent::begin(ContactId(1), game.surface, ChannelId(0), sample)
             };
             begun = true;
             game.report(tick.stamp_s, event);
@@ -198,7 +198,7 @@ fn a_game_that_pauses_goes_on_sounding() {
         })
         .collect();
     let mut game = Game::new();
-    let event = ContactEvent::begin(ContactId(1), game.surface, Actuator(0), game.touch(0.0));
+    let event = ContactEvent::begin(ContactId(1), game.surface, ChannelId(0), game.touch(0.0));
     game.report(0.0, event);
     for frame in &frames {
         for tick in frame {

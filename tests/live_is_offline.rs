@@ -13,7 +13,7 @@ use std::collections::HashMap;
 fn scene_of(config: Config) -> (Scene, asperity::Renderer, Names) {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
+    let surface = scene.add_surface(plate(0.9).body(body)).unwrap();
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),

@@ -5,7 +5,7 @@ use crate::common::{peak, rms};
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::{
-    Actuator, Body, BodyId, ClippedBecause, ClockMode, Config, ContactEvent, ContactId, ContactSample,
+    Body, BodyId, ChannelId, ClippedBecause, ClockMode, Config, ContactEvent, ContactId, ContactSample,
     Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
 };
 use std::path::Path;
@@ -81,7 +81,7 @@ fn db(ratio: f64) -> f64 {
 }
 
 fn ground(relief_m: f64, material: Material) -> Surface {
-    Surface::flat(1.0, 1.0).unwrap().of(material).micro_relief_m(relief_m)
+    Surface::flat(1.0, 1.0).unwrap().material(material).micro_relief_m(relief_m)
 }
 
 /// Numbers between 0 and 1 from a seed.
@@ -114,24 +114,24 @@ fn limited_db(mut any: impl FnMut() -> f64) -> f64 {
     for _ in 0..(3.0 * any()) as usize {
         let of = material(any());
         let other = played.body(Body::stock(stock(any()), of, 0.05 + 0.7 * any()).unwrap());
-        played.scene.add_surface(ground(1e-5, of).on(other)).unwrap();
+        played.scene.add_surface(ground(1e-5, of).body(other)).unwrap();
     }
     let size_m = 0.3 * (mass_kg / 5.0).cbrt().clamp(0.1, 3.0);
     let thing = played.body(Body::stock(stock(any()), material(any()), size_m).unwrap());
     let floor = material(any());
     let surface = ground(relief_m, floor);
     let surface = if any() < 0.5 {
-        surface.on(played.body(Body::stock(Stock::Plate, floor, 0.5).unwrap()))
+        surface.body(played.body(Body::stock(Stock::Plate, floor, 0.5).unwrap()))
     } else {
         surface
     };
     let top = played.scene.add_surface(surface).unwrap();
     for faster in [1.0, 2.0] {
-        played.stroke(Touching::on(top).with(rigid).held_by(thing), 9.81 * mass_kg, faster);
+        played.stroke(Touching::on(top).probe(rigid).held_by(thing), 9.81 * mass_kg, faster);
         played.drop(thing, mass_kg, 2.43 * faster);
-        let finger = Touching::on(top).felt_by(Actuator(0));
+        let finger = Touching::on(top).felt_by(ChannelId(0));
         played.stroke(finger, 1.0, 0.1 * faster);
-        played.stroke(finger.with(stylus), 1.0, 0.1 * faster);
+        played.stroke(finger.probe(stylus), 1.0, 0.1 * faster);
     }
     let most = peak(&played.audio).max(peak(&played.haptic));
     assert!(most <= 1.0, "{most} over full scale");
@@ -159,11 +159,11 @@ fn a_fingers_stroke_on_levels_of_its_own_is_within_a_decibel_of_the_scene_files(
         // Others are there, louder and softer.
         for material in [Material::STEEL, Material::RUBBER] {
             let body = played.body(Body::stock(Stock::Bar, material, 0.3).unwrap());
-            played.scene.add_surface(ground(1e-3, material).on(body)).unwrap();
+            played.scene.add_surface(ground(1e-3, material).body(body)).unwrap();
         }
         let body = played.body(Body::stock(Stock::Plate, preset.material, 0.14).unwrap());
-        let top = played.scene.add_surface(ground(relief_m, preset.material).on(body)).unwrap();
-        let stroked = played.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1);
+        let top = played.scene.add_surface(ground(relief_m, preset.material).body(body)).unwrap();
+        let stroked = played.stroke(Touching::on(top).felt_by(ChannelId(0)), 1.0, 0.1);
         let toml = format!(
             "[[body]]\nname = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"{}\"\n[[surface]]\nname = \"s\"\nbody = \"b\"\n\
              width_m = 1.0\nheight_m = 1.0\nmicro_relief_m = {relief_m:e}\n[[actuator]]\noutput = \"displacement\"\n",
@@ -173,7 +173,7 @@ fn a_fingers_stroke_on_levels_of_its_own_is_within_a_decibel_of_the_scene_files(
         let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &Overrides::default()).unwrap();
         let top = names.surfaces["s"];
         let mut same = Played { scene, renderer, time_s: 0.0, haptic: Vec::new(), audio: Vec::new() };
-        let from_file = same.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1);
+        let from_file = same.stroke(Touching::on(top).felt_by(ChannelId(0)), 1.0, 0.1);
         for sense in 0..2 {
             let off_db = db(rms(&stroked[sense]) / rms(&from_file[sense]));
             worst[sense] = worst[sense].max(off_db.abs());
@@ -191,13 +191,13 @@ fn what_sounds_keeps_its_level_when_something_louder_is_added() {
     let played = |louder: bool| {
         let mut played = Played::new(live(LevelPolicy::Shared));
         let body = played.body(Body::stock(Stock::Plate, Material::WOOD, 0.14).unwrap());
-        let top = played.scene.add_surface(ground(1e-6, Material::WOOD).on(body)).unwrap();
-        let touching = Touching::on(top).felt_by(Actuator(0));
+        let top = played.scene.add_surface(ground(1e-6, Material::WOOD).body(body)).unwrap();
+        let touching = Touching::on(top).felt_by(ChannelId(0));
         let before = played.stroke(touching, 1.0, 0.1);
         if louder {
             let bell = played.body(Body::stock(Stock::Bowl, Material::STEEL, 0.1).unwrap());
-            let rough = played.scene.add_surface(ground(1e-3, Material::STEEL).on(bell)).unwrap();
-            let [heard, felt] = played.stroke(Touching::on(rough).felt_by(Actuator(0)), 1.0, 0.1);
+            let rough = played.scene.add_surface(ground(1e-3, Material::STEEL).body(bell)).unwrap();
+            let [heard, felt] = played.stroke(Touching::on(rough).felt_by(ChannelId(0)), 1.0, 0.1);
             assert!(
                 db(rms(&heard)) < -26.0 && db(rms(&felt)) < -20.0,
                 "{} {}",
@@ -223,8 +223,8 @@ fn shared_levels_keep_differences_and_levels_of_ones_own_do_not() {
         let mut played = Played::new(live(policy));
         let levels = [1e-4, 1e-5].map(|relief_m| {
             let body = played.body(Body::stock(Stock::Plate, Material::WOOD, 0.14).unwrap());
-            let top = played.scene.add_surface(ground(relief_m, Material::WOOD).on(body)).unwrap();
-            played.stroke(Touching::on(top).felt_by(Actuator(0)), 1.0, 0.1).map(|x| db(rms(&x)))
+            let top = played.scene.add_surface(ground(relief_m, Material::WOOD).body(body)).unwrap();
+            played.stroke(Touching::on(top).felt_by(ChannelId(0)), 1.0, 0.1).map(|x| db(rms(&x)))
         });
         [0, 1].map(|sense| levels[0][sense] - levels[1][sense])
     };
@@ -240,10 +240,10 @@ fn equal_additions_give_equal_bits() {
     let bits = || {
         let mut played = Played::new(live(LevelPolicy::Shared));
         let body = played.body(Body::stock(Stock::Pan, Material::STEEL, 0.3).unwrap());
-        let top = played.scene.add_surface(ground(3e-5, Material::STEEL).on(body)).unwrap();
+        let top = played.scene.add_surface(ground(3e-5, Material::STEEL).body(body)).unwrap();
         played.drop(body, 2.0, 1.0);
         played
-            .stroke(Touching::on(top).felt_by(Actuator(0)), 0.7, 0.2)
+            .stroke(Touching::on(top).felt_by(ChannelId(0)), 0.7, 0.2)
             .map(|x| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
     };
     assert_eq!(bits(), bits());
@@ -254,8 +254,8 @@ fn the_trial_leaves_a_surface_as_it_was() {
     let heard = |policy| {
         let mut played = Played::new(Config { seed: 3, ..live(policy) });
         let body = played.body(Body::stock(Stock::Plate, Material::GLASS, 0.14).unwrap());
-        let top = played.scene.add_surface(ground(2e-5, Material::GLASS).on(body)).unwrap();
-        played.stroke(Touching::on(top).felt_by(Actuator(0)), 0.5, 0.05)
+        let top = played.scene.add_surface(ground(2e-5, Material::GLASS).body(body)).unwrap();
+        played.stroke(Touching::on(top).felt_by(ChannelId(0)), 0.5, 0.05)
     };
     let (found, given) = (heard(LevelPolicy::Each), heard(LevelPolicy::AsGiven));
     // Stay clear of the limiters of either.
@@ -300,7 +300,7 @@ fn content_that_was_there_is_added_in_microseconds() {
     let id = played.body(body());
     let mut surfaces = Vec::new();
     let first_surface_s = timed(&mut played.scene, &mut |scene| {
-        surfaces.push(scene.add_surface(ground(2e-5, Material::CERAMIC).on(id)).unwrap());
+        surfaces.push(scene.add_surface(ground(2e-5, Material::CERAMIC).body(id)).unwrap());
     });
     let (mut bodies_s, mut surfaces_s) = (Vec::new(), Vec::new());
     for _ in 0..60 {
@@ -308,7 +308,7 @@ fn content_that_was_there_is_added_in_microseconds() {
         let mut id = None;
         let mut new = Some(new);
         bodies_s.push(timed(&mut played.scene, &mut |scene| id = scene.add_body(new.take().unwrap()).ok()));
-        let mut top = Some(ground(2e-5, Material::CERAMIC).on(id.unwrap()));
+        let mut top = Some(ground(2e-5, Material::CERAMIC).body(id.unwrap()));
         surfaces_s.push(timed(&mut played.scene, &mut |scene| {
             surfaces.push(scene.add_surface(top.take().unwrap()).unwrap());
         }));
@@ -332,10 +332,10 @@ fn content_that_was_there_is_added_in_microseconds() {
 fn the_readmes_snippet_stays_within_full_scale_without_its_limiter() {
     let Engine { mut scene, mut renderer, .. } = Config::live(44_100.0).build().unwrap();
     let plate = scene.add_body(Body::stock(Stock::Plate, Material::CERAMIC, 0.14).unwrap()).unwrap();
-    let top = Surface::flat(0.14, 0.14).unwrap().of(Material::CERAMIC).on(plate);
+    let top = Surface::flat(0.14, 0.14).unwrap().material(Material::CERAMIC).body(plate);
     let top = scene.add_surface(top).unwrap();
     let finger = ContactSample::new([0.3, 0.5], 0.6).sliding([0.1, 0.0]);
-    scene.report(0.0, ContactEvent::begin(ContactId(1), top, Actuator(0), finger)).unwrap();
+    scene.report(0.0, ContactEvent::begin(ContactId(1), top, ChannelId(0), finger)).unwrap();
     scene.report(0.0, ContactEvent::Impact(Impact::from_impulse(plate, 0.002, 0.5, 0.6))).unwrap();
     let (mut haptic, mut audio) = ([0.0; 8192], [0.0; 8192]);
     renderer.render(&mut [&mut haptic], &mut [&mut audio]);
@@ -371,7 +371,7 @@ fn strokes_that_clip_are_named_with_their_surface() {
     let crate_ = played.body(Body::stock(Stock::Plate, Material::SOFTWOOD, 0.4).unwrap());
     let rigid = played.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
     let bricks = played.scene.add_surface(ground(5e-3, Material::BRICK)).unwrap();
-    played.stroke(Touching::on(bricks).with(rigid).held_by(crate_), 63.0, 1.0);
+    played.stroke(Touching::on(bricks).probe(rigid).held_by(crate_), 63.0, 1.0);
     let because = played.scene.why_clipped();
     println!("{}", because[0]);
     let told = because[0].to_string();
@@ -388,7 +388,7 @@ fn strokes_that_clip_are_named_with_their_surface() {
     let crate_ = found.body(Body::stock(Stock::Plate, Material::SOFTWOOD, 0.4).unwrap());
     let rigid = found.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
     let bricks = found.scene.add_surface(ground(5e-3, Material::BRICK)).unwrap();
-    let [heard, _] = found.stroke(Touching::on(bricks).with(rigid).held_by(crate_), 63.0, 1.0);
+    let [heard, _] = found.stroke(Touching::on(bricks).probe(rigid).held_by(crate_), 63.0, 1.0);
     println!("crate on bricks: {:.1} dB rms, limiter {:.1} dB", db(rms(&heard)), found.renderer.limiter_db());
     assert!(found.renderer.limiter_db() <= 6.0 && db(rms(&heard)) > -40.0);
 }
@@ -402,10 +402,10 @@ fn a_surface_that_was_prepared_is_added_with_the_same_level() {
             played.scene.prepare_body(&new).unwrap();
         }
         let body = played.body(new);
-        let surface = ground(2e-5, Material::GLASS).on(body);
+        let surface = ground(2e-5, Material::GLASS).body(body);
         let surface = if prepared { played.scene.prepare(surface).unwrap() } else { surface };
         let top = played.scene.add_surface(surface).unwrap();
-        played.stroke(Touching::on(top).felt_by(Actuator(0)), 0.5, 0.1)
+        played.stroke(Touching::on(top).felt_by(ChannelId(0)), 0.5, 0.1)
     };
     assert_eq!(heard(false), heard(true));
 }
@@ -445,7 +445,7 @@ fn what_slides_faster_or_heavier_is_not_softer() {
         let rigid = played.scene.add_probe(probe_by_name("rigid").unwrap()).unwrap();
         let thing = played.body(Body::stock(Stock::Barrel, Material::WOOD, 0.9).unwrap());
         let top = played.scene.add_surface(ground(2e-5, Material::STONE)).unwrap();
-        let [heard, _] = played.stroke(Touching::on(top).with(rigid).held_by(thing), force_n, speed_m_s);
+        let [heard, _] = played.stroke(Touching::on(top).probe(rigid).held_by(thing), force_n, speed_m_s);
         db(rms(&heard))
     };
     for force_n in [5.0, 50.0, 300.0] {

@@ -9,7 +9,7 @@ use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity::surface::solid_noise::SolidNoise;
 use asperity::{
-    Actuator, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Extent, Surface, Tap,
+    ChannelId, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Extent, Surface, Tap,
     Wrap,
 };
 use std::collections::HashMap;
@@ -53,7 +53,7 @@ fn strokes_beside(surface: Surface, fingers: u64, mut frame: impl FnMut()) -> Ve
                 ..ContactSample::default()
             };
             let event = match step {
-                0 => ContactEvent::begin(ContactId(finger), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(finger), surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(finger), sample),
             };
             scene.report(t, event).unwrap();

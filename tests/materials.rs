@@ -3,7 +3,7 @@
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::{
-    Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, Stock, Surface,
+    Body, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, Stock, Surface,
 };
 use std::path::Path;
 
@@ -48,7 +48,7 @@ fn every_material_strikes_and_strokes_without_anything_recorded() {
         let mut engine = Config::default().build().unwrap();
         let scene = &mut engine.scene;
         let body = scene.add_body(Body::stock(Stock::Plate, preset.material, 0.3).unwrap()).unwrap();
-        let top = Surface::flat(0.3, 0.3).unwrap().of(preset.material).on(body);
+        let top = Surface::flat(0.3, 0.3).unwrap().material(preset.material).body(body);
         let top = scene.add_surface(top).unwrap();
         scene.report(0.0, ContactEvent::Impact(Impact::on(body))).unwrap();
         let (_, struck) = render(&mut engine, 0.25);
@@ -59,7 +59,7 @@ fn every_material_strikes_and_strokes_without_anything_recorded() {
             closing_m_s: 0.0,
             ..ContactSample::default()
         };
-        engine.scene.report(0.3, ContactEvent::begin(ContactId(1), top, Actuator(0), sample(0.0))).unwrap();
+        engine.scene.report(0.3, ContactEvent::begin(ContactId(1), top, ChannelId(0), sample(0.0))).unwrap();
         let (mut felt, mut heard) = (Vec::new(), Vec::new());
         for step in 1..60 {
             let t = f64::from(step) / 60.0;
@@ -96,7 +96,7 @@ fn a_scene_file_sounds_with_a_stock_body_and_a_flat_surface_alone() {
     // The same as the library makes it, to the last bit.
     let mut same = Config::default().build().unwrap();
     let body = same.scene.add_body(Body::stock(Stock::Plate, Material::WOOD, 0.6).unwrap()).unwrap();
-    let top = Surface::flat(0.6, 0.6).unwrap().of(Material::WOOD).on(body);
+    let top = Surface::flat(0.6, 0.6).unwrap().material(Material::WOOD).body(body);
     let top = same.scene.add_surface(top).unwrap();
     let mut again = scene(text).unwrap();
     let sample = ContactSample {
@@ -107,8 +107,8 @@ fn a_scene_file_sounds_with_a_stock_body_and_a_flat_surface_alone() {
         ..ContactSample::default()
     };
     let from_file = again.names.surfaces["top"];
-    again.scene.report(0.0, ContactEvent::begin(ContactId(1), from_file, Actuator(0), sample)).unwrap();
-    same.scene.report(0.0, ContactEvent::begin(ContactId(1), top, Actuator(0), sample)).unwrap();
+    again.scene.report(0.0, ContactEvent::begin(ContactId(1), from_file, ChannelId(0), sample)).unwrap();
+    same.scene.report(0.0, ContactEvent::begin(ContactId(1), top, ChannelId(0), sample)).unwrap();
     assert!(render(&mut again, 0.2) == render(&mut same, 0.2));
 }
 

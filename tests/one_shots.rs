@@ -3,7 +3,7 @@
 use crate::common;
 
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material,
+    Body, BodyId, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material,
     ModalModel, Mode, Renderer, Scene, Stock, SurfaceId,
 };
 use common::{SIDE_M, bar, plate};
@@ -15,11 +15,11 @@ const TICK: usize = 800;
 
 fn body(frequency_hz: f64, decay_per_s: f64) -> Body {
     let mode = Mode { frequency_hz, decay_per_s, amplitude: 0.01, phase_rad: 0.0 };
-    Body::new(ModalModel::new(vec![mode], 0.01).unwrap()).of(Material::GLASS)
+    Body::new(ModalModel::new(vec![mode], 0.01).unwrap()).material(Material::GLASS)
 }
 
 fn strike(body: BodyId) -> ContactEvent {
-    ContactEvent::Impact(Impact::on(body).by(Material::STEEL, 0.01, 0.005))
+    ContactEvent::Impact(Impact::on(body).striker(Material::STEEL, 0.01, 0.005))
 }
 
 /// A stroke on one bus, a bell on another, and shards on a third.
@@ -41,8 +41,8 @@ impl Game {
         let config = Config { audio: buses, ..common::raw_live(RATE_HZ) };
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let ground = scene.add_body(bar()).unwrap();
-        let surface = scene.add_surface(plate(0.8).on(ground)).unwrap();
-        let bell = scene.add_body(body(900.0, 40.0).on_bus(1)).unwrap();
+        let surface = scene.add_surface(plate(0.8).body(ground)).unwrap();
+        let bell = scene.add_body(body(900.0, 40.0).bus(BusId(1))).unwrap();
         let (stroke, felt, bells, shards) = Default::default();
         Self { scene, renderer, bell, surface, tick: 0, stroke, felt, bells, shards }
     }
@@ -54,7 +54,7 @@ impl Game {
     /// Adds, strikes and removes so many shards.
     fn shatter(&mut self, count: usize, shard: &Body) {
         for _ in 0..count {
-            let id = self.scene.add_body(shard.clone().on_bus(2)).unwrap();
+            let id = self.scene.add_body(shard.clone().bus(BusId(2))).unwrap();
             self.scene.report(self.now_s(), strike(id)).unwrap();
             self.scene.remove_body(id).unwrap();
         }
@@ -69,7 +69,7 @@ impl Game {
         let t = self.now_s();
         let sample = ContactSample::new([0.1 + 0.02 * t / SIDE_M, 0.5], 0.6).sliding([0.02, 0.0]);
         let event = if self.tick == 0 {
-            ContactEvent::begin(ContactId(1), self.surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(1), self.surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(1), sample)
         };

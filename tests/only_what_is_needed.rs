@@ -5,7 +5,7 @@ use crate::common;
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{
-    Actuator, AudioBus, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel,
+    AudioBus, ChannelId, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel,
     Mode, Renderer, Scene,
 };
 use asperity_dsp::rng::Rng;
@@ -102,9 +102,9 @@ fn two_fingers_on_two_positions_add_up() {
         let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
         let body = scene.add_body(model.clone()).unwrap();
         for (finger, &position) in touching.iter().enumerate() {
-            let surface = plate(0.8).on(body).at_strike_position(position);
+            let surface = plate(0.8).body(body).at_strike_position(position);
             let surface = scene.add_surface(surface).unwrap();
-            let event = ContactEvent::begin(ContactId(finger as u64), surface, Actuator(0), sliding());
+            let event = ContactEvent::begin(ContactId(finger as u64), surface, ChannelId(0), sliding());
             scene.report(0.0, event).unwrap();
         }
         let (mut haptic, mut audio) = (vec![0.0; 8820], vec![0.0; 8820]);
@@ -154,9 +154,9 @@ impl TenFingers {
     fn new(config: Config) -> Self {
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(body(80)).unwrap();
-        let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
+        let surface = scene.add_surface(plate(0.9).body(body)).unwrap();
         for finger in 0..10 {
-            let event = ContactEvent::begin(ContactId(finger), surface, Actuator(0), Self::at(finger, 0.0));
+            let event = ContactEvent::begin(ContactId(finger), surface, ChannelId(0), Self::at(finger, 0.0));
             scene.report(0.0, event).unwrap();
         }
         Self { scene, renderer, reported: 0 }

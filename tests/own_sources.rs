@@ -10,7 +10,7 @@ use asperity::surface::height_field::{
 use asperity::surface::height_map::{Extent, HeightMap};
 use asperity::surface::tiled::Tiled;
 use asperity::{
-    Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
+    Body, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
     Surface, TipLaw,
 };
 use asperity_dsp::DesignError;
@@ -78,7 +78,7 @@ impl HeightField for Counting {
             TouchKind::Presses => count(&self.calls.presses),
             TouchKind::Stands { depth_m } => {
                 count(&self.calls.stands);
-                return Reaction { carries_n: Some(500.0 * depth_m.max(0.0)), ..Reaction::default() };
+                return Reaction { support_force_n: Some(500.0 * depth_m.max(0.0)), ..Reaction::default() };
             }
         }
         Reaction { grain_rate_per_s: 3000.0, grain_impulse_n_s: 1e-5, ..Reaction::default() }
@@ -138,9 +138,9 @@ fn stroked(wrap: Wrap, beyond: Beyond) -> (Arc<Calls>, f64) {
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let stylus = scene.add_probe(asperity::probe_by_name("stylus").unwrap()).unwrap();
     let mode = Mode { frequency_hz: 3000.0, decay_per_s: 200.0, amplitude: 1.0, phase_rad: 0.0 };
-    let body = Body::new(ModalModel::new(vec![mode], 0.01).unwrap()).of(Material::CERAMIC);
+    let body = Body::new(ModalModel::new(vec![mode], 0.01).unwrap()).material(Material::CERAMIC);
     let body = scene.add_body(body).unwrap();
-    let surface = Surface::from_source(wrap(own), SIDE_M, SIDE_M).unwrap().micro_relief_m(1e-6).on(body);
+    let surface = Surface::from_source(wrap(own), SIDE_M, SIDE_M).unwrap().micro_relief_m(1e-6).body(body);
     let surface = scene.add_surface(surface).unwrap();
     let sample = ContactSample {
         uv: [0.4, 0.4],
@@ -150,7 +150,7 @@ fn stroked(wrap: Wrap, beyond: Beyond) -> (Arc<Calls>, f64) {
         at_m: Some([0.01, 0.02, 0.03]),
         ..ContactSample::default()
     };
-    let mut touching = asperity::Touching::on(surface).felt_by(Actuator(0));
+    let mut touching = asperity::Touching::on(surface).felt_by(ChannelId(0));
     touching.probe = Some(stylus);
     let begin = ContactEvent::Begin { contact: ContactId(1), touching, sample };
     scene.report(0.0, begin).unwrap();

@@ -4,8 +4,8 @@ use asperity::files::Memory;
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::{
-    Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Integrator, Probe, Renderer,
-    Scene, SurfaceId, Touching,
+    ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Integrator, Probe,
+    Renderer, Scene, SurfaceId, Touching,
 };
 use std::path::Path;
 
@@ -35,7 +35,8 @@ fn a_scene_of_parts_renders_the_bits_of_the_scene_file() {
     );
     files.add("scene.toml", scene);
     let whole = Engine::open_from(&files, "scene.toml").unwrap();
-    let touching = Touching::on(whole.names.surfaces["s"]).with(whole.names.probes["p"]).felt_by(Actuator(0));
+    let touching =
+        Touching::on(whole.names.surfaces["s"]).probe(whole.names.probes["p"]).felt_by(ChannelId(0));
     let expected = stroke(whole.scene, whole.renderer, touching);
     assert!(expected.iter().any(|x| *x != 0.0));
 
@@ -47,7 +48,7 @@ fn a_scene_of_parts_renders_the_bits_of_the_scene_file() {
     let read = scene.read_surface(SURFACE, here, Some(body), &names, &overrides).unwrap();
     assert!(read.workers.is_empty());
     let surface: SurfaceId = scene.add_surface(read.surface).unwrap();
-    let parts = stroke(scene, renderer, Touching::on(surface).with(probe).felt_by(Actuator(0)));
+    let parts = stroke(scene, renderer, Touching::on(surface).probe(probe).felt_by(ChannelId(0)));
     assert!(parts == expected);
 }
 

@@ -8,8 +8,8 @@ use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet
 use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};
 use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::{
-    Actuator, ActuatorSettings, AddError, AudioBus, Body, Config, ContactBlock, ContactEvent, ContactId,
-    ContactSample, Engine, Quantity, Renderer, Scene, Surface, SurfaceId, Tap, Touching,
+    ActuatorSettings, AddError, AudioBus, Body, BusId, ChannelId, Config, ContactBlock, ContactEvent,
+    ContactId, ContactSample, Engine, Quantity, Renderer, Scene, Surface, SurfaceId, Tap, Touching,
 };
 use asperity_dsp::vibration_points::{PointDesign, PointState};
 use common::{bar, grating, plate};
@@ -37,8 +37,8 @@ impl Game {
             ..Config { sample_rate_hz: rate_hz, ..Config::default() }
         };
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
-        let body = scene.add_body(Body::new(bar()).on_bus(1)).unwrap();
-        let surface = scene.add_surface(grating(2e-3, 5e-5).on(body)).unwrap();
+        let body = scene.add_body(Body::new(bar()).bus(BusId(1))).unwrap();
+        let surface = scene.add_surface(grating(2e-3, 5e-5).body(body)).unwrap();
         Self { scene, renderer, surface, step: 0 }
     }
 
@@ -54,7 +54,7 @@ impl Game {
                 ..ContactSample::default()
             };
             let event = if self.step == 0 {
-                let hand = Actuator(u16::from(finger == 2));
+                let hand = ChannelId(u16::from(finger == 2));
                 ContactEvent::begin_with(ContactId(finger), Touching::on(self.surface).felt_by(hand), sample)
             } else {
                 ContactEvent::moved(ContactId(finger), sample)
@@ -107,7 +107,7 @@ fn a_pcm_port_gives_the_very_samples_that_leave_at_any_rate_and_in_any_blocks() 
     for rate_hz in [8_000.0, 22_050.0, 44_100.0, 48_000.0] {
         for frames in [1, 64, 333] {
             let mut game = Game::new(rate_hz);
-            let feeds = [Feed::Haptic(Actuator(0)), Feed::Haptic(Actuator(1)), Feed::Bus(0), Feed::Bus(1)];
+            let feeds = [Feed::Haptic(ChannelId(0)), Feed::Haptic(ChannelId(1)), Feed::Bus(0), Feed::Bus(1)];
             let mut ports = feeds.map(|from| game.scene.open_port(Pcm { from, holds_s: 2.0 }).unwrap());
             let mut left: [Vec<f32>; 4] = Default::default();
             for _ in 0..20 {
@@ -181,11 +181,11 @@ fn a_force_port_gives_the_rows_of_an_offline_render_and_sums_them_for_each_hand(
         for tick in read.chunk_by(|a, b| a.tick == b.tick) {
             let of = |of: Of| tick.iter().find(|row| row.of == of).unwrap().force_n;
             let [a, b, c] = [0, 1, 2].map(|finger| of(Of::Contact(ContactId(finger))));
-            let both = of(Of::Hand(Actuator(0)));
+            let both = of(Of::Hand(ChannelId(0)));
             assert!(
                 (0..3).all(|axis| (both[axis] - a[axis] - b[axis]).abs() <= 1e-15 + 1e-12 * both[axis].abs())
             );
-            assert_eq!((of(Of::Hand(Actuator(1))), tick.len()), (c, 5));
+            assert_eq!((of(Of::Hand(ChannelId(1))), tick.len()), (c, 5));
         }
     }
 }
@@ -193,7 +193,7 @@ fn a_force_port_gives_the_rows_of_an_offline_render_and_sums_them_for_each_hand(
 #[test]
 fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_audio_half_nothing() {
     let mut game = Game::new(44_100.0);
-    let mut pcm = game.scene.open_port(Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.25 }).unwrap();
+    let mut pcm = game.scene.open_port(Pcm { from: Feed::Haptic(ChannelId(0)), holds_s: 0.25 }).unwrap();
     let mut force = game.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.25 }).unwrap();
     let left = game.play_unread(150);
     let mut read = vec![0.0; left.len()];
@@ -209,7 +209,7 @@ fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_a
     game.report();
     game.render(64, &mut Default::default(), &mut Nothing);
     let lost = (pcm.lost(), force.lost());
-    assert!(pcm.read(&mut read) > 0 && force.newest(Actuator(1)).unwrap().1[2] > 1.0);
+    assert!(pcm.read(&mut read) > 0 && force.newest(ChannelId(1)).unwrap().1[2] > 1.0);
     assert_eq!((pcm.lost(), force.lost()), lost);
 }
 
@@ -227,7 +227,7 @@ fn reduced(samples: &[f32], settings: PointSettings, rate_hz: f64) -> Vec<Point>
 fn points_and_levels_are_those_of_the_offline_reduction_to_the_bit_in_any_blocks() {
     for (rate_hz, frames) in [(8_000.0, 64), (44_100.0, 1), (44_100.0, 333), (48_000.0, 64)] {
         let mut game = Game::new(rate_hz);
-        let from = Feed::Haptic(Actuator(0));
+        let from = Feed::Haptic(ChannelId(0));
         let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 2.0 }).unwrap();
         let mut levels = game.scene.open_port(Levels { from, rate_hz: 30.0, holds_s: 2.0 }).unwrap();
         let mut left: [Vec<f32>; 4] = Default::default();
@@ -250,7 +250,7 @@ fn points_and_levels_are_those_of_the_offline_reduction_to_the_bit_in_any_blocks
 #[test]
 fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_audio_half_nothing() {
     let mut game = Game::new(44_100.0);
-    let from = Feed::Haptic(Actuator(0));
+    let from = Feed::Haptic(ChannelId(0));
     let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 0.25 }).unwrap();
     let mut levels = game.scene.open_port(Levels { from, rate_hz: 60.0, holds_s: 0.25 }).unwrap();
     let mut pcm = game.scene.open_port(Pcm { from, holds_s: 0.25 }).unwrap();
@@ -271,14 +271,14 @@ fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_aud
 fn points_that_no_device_plays_are_refused_by_name() {
     let Engine { mut scene, .. } = Config::default().build().unwrap();
     let points = |settings, from| Points { from, settings, holds_s: 0.1 };
-    let from = Feed::Haptic(Actuator(0));
+    let from = Feed::Haptic(ChannelId(0));
     let mut refused = |port: Points| scene.open_port(port).err().unwrap().to_string();
     assert!(refused(points(PointSettings { rate_hz: 0.0, ..HEADSET }, from)).starts_with("rate_hz"));
     assert!(
         refused(points(PointSettings { band_hz: [f64::NAN; 2], ..HEADSET }, from)).starts_with("band_hz")
     );
     assert!(refused(points(HEADSET, Feed::Bus(7))).starts_with("bus: 7"));
-    assert!(refused(points(HEADSET, Feed::Haptic(Actuator(9)))).starts_with("actuator"));
+    assert!(refused(points(HEADSET, Feed::Haptic(ChannelId(9)))).starts_with("actuator"));
     assert!(refused(Points { holds_s: 0.0, ..points(HEADSET, from) }).starts_with("holds_s"));
 }
 
@@ -312,7 +312,7 @@ fn what_a_port_cannot_be_is_refused_by_name_and_a_dropped_reader_makes_room() {
     let pcm = |from| Pcm { from, holds_s: 0.1 };
     let refused = |error: AddError| error.to_string();
     assert!(refused(scene.open_port(pcm(Feed::Bus(1))).err().unwrap()).starts_with("bus: 1"));
-    assert!(refused(scene.open_port(pcm(Feed::Haptic(Actuator(1)))).err().unwrap()).starts_with("actuator"));
+    assert!(refused(scene.open_port(pcm(Feed::Haptic(ChannelId(1)))).err().unwrap()).starts_with("actuator"));
     let endless = Pcm { holds_s: f64::NAN, ..pcm(Feed::Bus(0)) };
     assert!(refused(scene.open_port(endless).err().unwrap()).starts_with("holds_s"));
     for rate_hz in [0.0, 1e6, 19_999.0 + 1e5] {
@@ -360,7 +360,7 @@ fn sand_is_seen_as_it_moves_tile_by_tile_without_the_audio_half() {
             ..ContactSample::default()
         };
         let event = if step == 0 {
-            ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(1), sample)
         };

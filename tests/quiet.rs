@@ -3,7 +3,7 @@
 use crate::common;
 
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Engine, Impact,
+    Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Engine, Impact,
     Renderer, Scene, SurfaceId, Touching,
 };
 use common::{bar, grating};
@@ -26,7 +26,7 @@ impl Game {
     fn new(frames: usize) -> Self {
         let Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
         let body = scene.add_body(bar()).unwrap();
-        let surface = scene.add_surface(grating(2e-3, 5e-5).on(body)).unwrap();
+        let surface = scene.add_surface(grating(2e-3, 5e-5).body(body)).unwrap();
         Self { scene, renderer, body, surface, step: 0, frames, haptic: Vec::new(), audio: Vec::new() }
     }
 
@@ -44,7 +44,7 @@ impl Game {
             ..ContactSample::default()
         };
         let event = if self.step == 0 {
-            let touching = Touching::on(self.surface).felt_by(Actuator(0));
+            let touching = Touching::on(self.surface).felt_by(ChannelId(0));
             ContactEvent::begin_with(ContactId(1), touching, sample)
         } else {
             ContactEvent::moved_with(ContactId(1), sample, emphasis)
@@ -138,7 +138,7 @@ fn a_body_is_made_softer_while_it_rings_and_comes_back_to_the_bit() {
     // From the beginning, the same.
     let mut half = Game::new(64);
     half.body = half.scene.add_body(Body::new(bar()).gain(0.5)).unwrap();
-    half.surface = half.scene.add_surface(grating(2e-3, 5e-5).on(half.body)).unwrap();
+    half.surface = half.scene.add_surface(grating(2e-3, 5e-5).body(half.body)).unwrap();
     half.strokes(90);
     assert!((rms(&half.audio) / rms(&plain.audio) - 0.5).abs() < 1e-6);
 }

@@ -89,8 +89,8 @@ fn what_has_no_shapes_is_refused_with_the_reason() {
 
 fn struck(model: ModalModel, block: usize) -> Vec<f32> {
     let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
-    let body = engine.scene.add_body(Body::new(model).of(Material::STEEL)).unwrap();
-    engine.scene.report(0.01, ContactEvent::Impact(Impact::on(body).at([0.0, 0.0, 0.01]))).unwrap();
+    let body = engine.scene.add_body(Body::new(model).material(Material::STEEL)).unwrap();
+    engine.scene.report(0.01, ContactEvent::Impact(Impact::on(body).at_m([0.0, 0.0, 0.01]))).unwrap();
     let mut sound = vec![0.0; 4_410];
     let mut felt = vec![0.0; 4_410];
     for (felt, sound) in felt.chunks_mut(block).zip(sound.chunks_mut(block)) {

@@ -6,7 +6,7 @@ use crate::common;
 use crate::counting;
 use crate::random_game;
 
-use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Renderer, Scene};
+use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Renderer, Scene};
 use common::{bar, plate};
 use counting::{heap_operations, held_bytes};
 use random_game::RandomGame;
@@ -78,7 +78,7 @@ fn strikes_strokes_and_holds_anywhere_on_a_body_touch_no_heap() {
     let text = closed_forms::modes_file(&closed_forms::plate(), |m| 90.0 * (m + 1) as f64, 5.0);
     let body = scene.add_body(asperity::ModalModel::parse(&text).unwrap()).unwrap();
     let frame = asperity::SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-    let surface = asperity::Surface::flat(0.4, 0.3).unwrap().frame(frame).on(body);
+    let surface = asperity::Surface::flat(0.4, 0.3).unwrap().frame(frame).body(body);
     let surface = scene.add_surface(surface).unwrap();
     let mut rng = asperity::dsp::rng::Rng::new(12);
     let (mut haptic, mut audio) = ([0.0f32; 300], [0.0f32; 300]);
@@ -89,11 +89,11 @@ fn strikes_strokes_and_holds_anywhere_on_a_body_touch_no_heap() {
         let sample =
             ContactSample::new([rng.uniform(), rng.uniform()], 2.0 * rng.uniform()).sliding([0.1, 0.05]);
         let event = match rng.next_u32() % 8 {
-            0 => ContactEvent::begin(contact, surface, Actuator(0), sample),
+            0 => ContactEvent::begin(contact, surface, ChannelId(0), sample),
             1 => ContactEvent::end(contact),
             2 => {
                 let at_m = [0.4 * rng.uniform(), 0.3 * rng.uniform(), 0.0];
-                ContactEvent::Impact(asperity::Impact::on(body).at(at_m))
+                ContactEvent::Impact(asperity::Impact::on(body).at_m(at_m))
             }
             _ => ContactEvent::moved(contact, sample),
         };
@@ -117,7 +117,7 @@ fn tangential() -> asperity::ActuatorSettings {
 fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
     let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(plate(0.8).on(body)).unwrap();
+    let surface = scene.add_surface(plate(0.8).body(body)).unwrap();
     let sample = |u: f64| ContactSample {
         uv: [u, 0.5],
         velocity_m_s: Some([0.1, 0.0]),
@@ -127,7 +127,7 @@ fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
     };
     let contacts = 10u64;
     for contact in 0..contacts {
-        let event = ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample(0.1));
+        let event = ContactEvent::begin(ContactId(contact), surface, ChannelId(0), sample(0.1));
         scene.report(0.0, event).unwrap();
     }
     let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);

@@ -7,8 +7,8 @@ use asperity::files::scene_file::SceneFile;
 use asperity::load::{Edits, Overrides};
 use asperity::offline::{self, Options};
 use asperity::{
-    Actuator, Body, ClockMode, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Material,
-    NoTap, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
+    Body, BusId, ChannelId, ClockMode, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact,
+    Material, NoTap, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
 };
 use std::io::Write;
 use std::path::Path;
@@ -27,7 +27,7 @@ fn bumps(names: &Names) -> Surface {
     let values = (0..64 * 64).map(|i| 0.5 + 0.5 * (f64::from(i) * 0.9).sin()).collect();
     let raster = asperity::surface::raster::Raster { width: 64, height: 64, values };
     let map = asperity::surface::height_map::HeightMap::new(&raster, extent, asperity::Wrap::Repeat).unwrap();
-    Surface::new(map, 0.1, 0.1).unwrap().on(names.bodies["bell"])
+    Surface::new(map, 0.1, 0.1).unwrap().body(names.bodies["bell"])
 }
 
 struct Game {
@@ -53,8 +53,9 @@ impl Game {
 
     /// Two seconds of a stroke in blocks of 441, edited in between.
     fn play(&mut self, own_surfaces: bool) {
-        let gong =
-            Body::new(Stock::Plate.modes(&Material::BRASS, 0.3).unwrap()).of(Material::BRASS).on_bus(1);
+        let gong = Body::new(Stock::Plate.modes(&Material::BRASS, 0.3).unwrap())
+            .material(Material::BRASS)
+            .bus(BusId(1));
         let sample = |t: f64| ContactSample {
             uv: [0.1 + 0.6 * t, 0.4],
             velocity_m_s: Some([0.06, 0.0]),
@@ -69,10 +70,10 @@ impl Game {
             let (bell, plate) = (names.bodies["bell"], names.surfaces["plate"]);
             match step {
                 30 => added = Some(self.scene.add_body(gong.clone()).unwrap()),
-                50 => self.scene.replace_body(bell, gong.clone().on_bus(0)).unwrap(),
-                60 => self.scene.set_body_bus(bell, 1).unwrap(),
-                70 => self.scene.set_audio_gain(1, 0.3).unwrap(),
-                75 => self.scene.set_haptic_gain(Actuator(0), 0.5).unwrap(),
+                50 => self.scene.replace_body(bell, gong.clone().bus(BusId(0))).unwrap(),
+                60 => self.scene.set_body_bus(bell, BusId(1)).unwrap(),
+                70 => self.scene.set_audio_gain(BusId(1), 0.3).unwrap(),
+                75 => self.scene.set_haptic_gain(ChannelId(0), 0.5).unwrap(),
                 80 => {
                     let softer = file_with("solid = { preset = \"granite\", amplitude_m = 3e-6 }");
                     self.scene.apply(&mut self.names, &file(), &softer, &Overrides::default()).unwrap();
@@ -88,9 +89,9 @@ impl Game {
             let probe =
                 (step == 100).then(|| self.scene.add_probe(probe_by_name("stylus").unwrap()).unwrap());
             let event = match step {
-                0 => ContactEvent::begin(ContactId(1), plate, Actuator(0), sample(t)),
+                0 => ContactEvent::begin(ContactId(1), plate, ChannelId(0), sample(t)),
                 100 => {
-                    let touching = Touching::on(plate).felt_by(Actuator(0)).with(probe.unwrap());
+                    let touching = Touching::on(plate).felt_by(ChannelId(0)).probe(probe.unwrap());
                     ContactEvent::begin_with(ContactId(1), touching, sample(t))
                 }
                 _ => ContactEvent::moved(ContactId(1), sample(t)),
@@ -259,7 +260,7 @@ fn a_live_recording_of_two_fingers_and_a_blow_renders_to_the_bits_of_the_game() 
         closing_m_s: 0.0,
         ..ContactSample::default()
     };
-    let touching = |channel| Touching::on(plate).felt_by(Actuator(channel));
+    let touching = |channel| Touching::on(plate).felt_by(ChannelId(channel));
     let mut played: [Vec<f32>; 3] = Default::default();
     scene.start_recording(&names);
     let mut t = 0.0;
@@ -283,7 +284,7 @@ fn a_live_recording_of_two_fingers_and_a_blow_renders_to_the_bits_of_the_game() 
         }
         if tick == 90 {
             let blow = Impact { speed_m_s: 0.5, mass_kg: 0.01, radius_m: 0.005, ..Impact::on(body) };
-            report(ContactEvent::Impact(Impact { actuator: Some(Actuator(0)), ..blow }));
+            report(ContactEvent::Impact(Impact { actuator: Some(ChannelId(0)), ..blow }));
         }
         let frames = if tick == 10 { 612 } else { 735 };
         let at = played[0].len();

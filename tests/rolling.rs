@@ -33,7 +33,7 @@ fn heard(
     let config = Config { probe: probe_by_name(probe).unwrap(), actuators, ..Config::default() };
     let Engine { mut scene, renderer, mut names, .. } = config.build().unwrap();
     let body = scene.add_body(Body::stock(Stock::Plate, material, 0.3).unwrap()).unwrap();
-    names.surfaces.insert("s".to_owned(), scene.add_surface(surface.on(body)).unwrap());
+    names.surfaces.insert("s".to_owned(), scene.add_surface(surface.body(body)).unwrap());
     let ContactLog { mut lines } = stroke(SIDE_M, speed_m_s, force_n, 1.0);
     for line in &mut lines {
         if let LogEvent::Begin { sample, .. } | LogEvent::Move { sample, .. } = &mut line.event
@@ -146,7 +146,7 @@ fn wheel_db(speed_m_s: f64, slip_m_s: f64) -> (f64, Vec<String>) {
     let config = Config { probe: probe_by_name("rigid").unwrap(), ..Config::default() };
     let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     let body = scene.add_body(Body::stock(Stock::Plate, Material::WOOD, 0.5).unwrap()).unwrap();
-    let road = scene.add_surface(plate(0.5).on(body)).unwrap();
+    let road = scene.add_surface(plate(0.5).body(body)).unwrap();
     let (contact, tick) = (ContactId(1), 441);
     let mut out = Vec::new();
     for n in 0..60 {

@@ -5,7 +5,7 @@
 //! platform's.
 
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Isa, ModalModel, Mode,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Isa, ModalModel, Mode,
     Surface, Wrap,
 };
 use asperity_surface::height_map::HeightMap;
@@ -41,14 +41,14 @@ fn render() -> [Vec<f32>; 2] {
     let config = Config { kernel: Some(Isa::Portable), ..Config::default() };
     let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     let body = scene.add_body(body()).unwrap();
-    let surface = scene.add_surface(Surface::new(map(), SIDE_M, SIDE_M).unwrap().on(body)).unwrap();
+    let surface = scene.add_surface(Surface::new(map(), SIDE_M, SIDE_M).unwrap().body(body)).unwrap();
     scene.report(0.01, ContactEvent::Impact(Impact::on(body))).unwrap();
     let sample = |n: i32| {
         let t = f64::from(n) / 60.0;
         let (u, speed) = if n < 20 { (t, 1.0) } else { (2.0 * 20.0 / 60.0 - t, -1.0) };
         ContactSample::new([0.1 + u, 0.5 + 0.3 * u], 0.8).sliding([speed * SIDE_M, 0.3 * speed * SIDE_M])
     };
-    scene.report(0.02, ContactEvent::begin(ContactId(1), surface, Actuator(0), sample(0))).unwrap();
+    scene.report(0.02, ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample(0))).unwrap();
     for n in 1..30 {
         scene.report(0.02 + f64::from(n) / 60.0, ContactEvent::moved(ContactId(1), sample(n))).unwrap();
     }

@@ -15,8 +15,8 @@ fn take(log: &ContactLog) -> Render {
         Config { actuators, ..Config::default() }.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surfaces = HashMap::from([
-        ("s".to_owned(), scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap()),
-        ("other".to_owned(), scene.add_surface(plate(0.9).on(body)).unwrap()),
+        ("s".to_owned(), scene.add_surface(grating(2e-3, 2e-5).body(body)).unwrap()),
+        ("other".to_owned(), scene.add_surface(plate(0.9).body(body)).unwrap()),
     ]);
     let names = Names { surfaces, bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     offline::render(scene, renderer, log, &names, &Options::default()).unwrap()

@@ -73,7 +73,7 @@ fn a_renderer_that_is_dropped_while_everything_rings_ends_its_threads() {
     for round in 0..40 {
         let mut strokes = Strokes::new(4, 300, 4);
         for body in 0..round % 3 {
-            let on = strokes.scene.add_body(Body::new(modes(100)).of(Material::CERAMIC)).unwrap();
+            let on = strokes.scene.add_body(Body::new(modes(100)).material(Material::CERAMIC)).unwrap();
             strokes.scene.report(0.01 * f64::from(body), ContactEvent::Impact(Impact::on(on))).unwrap();
         }
         strokes.render(64 * round as usize, || 64);

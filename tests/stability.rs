@@ -7,8 +7,8 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Impact, Integrator, Material,
-    ModalModel, Mode, PathMode, Probe, Renderer, Scene, Surface, SurfaceId,
+    ActuatorSettings, ChannelId, Config, ContactEvent, ContactId, ContactSample, Impact, Integrator,
+    Material, ModalModel, Mode, PathMode, Probe, Renderer, Scene, Surface, SurfaceId,
 };
 use asperity_dsp::rng::Rng;
 use common::{SIDE_M, bar, grating, plate};
@@ -37,7 +37,7 @@ impl Run {
         let config = Config { actuators: vec![si], contact_timeout_s: 3600.0, ..config };
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(bar()).unwrap();
-        let surface = scene.add_surface(surface.on(body)).unwrap();
+        let surface = scene.add_surface(surface.body(body)).unwrap();
         Self { scene, renderer, surface, haptic: vec![0.0; 441], audio: vec![0.0; 441] }
     }
 
@@ -46,7 +46,7 @@ impl Run {
     }
 
     fn begin(&mut self, sample: ContactSample) {
-        let event = ContactEvent::begin(ContactId(1), self.surface, Actuator(0), sample);
+        let event = ContactEvent::begin(ContactId(1), self.surface, ChannelId(0), sample);
         self.scene.report(self.now_s(), event).unwrap();
     }
 
@@ -234,7 +234,7 @@ fn a_storm_of_bad_numbers_leaves_a_working_engine() {
             0 => ContactEvent::begin(
                 ContactId(u64::from(rng.next_u32() % 3)),
                 run.surface,
-                Actuator(0),
+                ChannelId(0),
                 sample,
             ),
             _ => ContactEvent::moved(ContactId(u64::from(rng.next_u32() % 3)), sample),

@@ -4,7 +4,7 @@ use crate::closed_forms;
 use crate::counting;
 
 use asperity::{
-    Actuator, AddError, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Excitation, Exciter,
+    AddError, Body, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Excitation, Exciter,
     Friction, Impact, Material, ModalModel, Mode, Stock, Surface, SurfaceFrame, Touching,
 };
 use asperity_dsp::rng::Rng;
@@ -89,7 +89,7 @@ fn the_period_of_a_bowed_oscillator_is_that_of_the_closed_form_at_every_rate() {
             // Where it swings most a mode of a body weighs half of it.
             let body = Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).mass_kg(2.0 * mass_kg);
             let body = engine.scene.add_body(body).unwrap();
-            let surface = engine.scene.add_surface(smooth(COULOMB).on(body)).unwrap();
+            let surface = engine.scene.add_surface(smooth(COULOMB).body(body)).unwrap();
             let w = TAU * frequency_hz;
             let force_n = 1.5;
             let a = force_n * 0.5 / (mass_kg * w * w);
@@ -113,7 +113,7 @@ fn bowed_bar(friction: Friction) -> (Engine, asperity::BodyId, asperity::Surface
     let body = engine.scene.add_body(ModalModel::parse(&modes_file(&bar(), hz, 4.0)).unwrap()).unwrap();
     // The edge at the bar's end, bowed across: u runs out of the bar's plane.
     let frame = SurfaceFrame::new([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]).unwrap();
-    let surface = engine.scene.add_surface(smooth(friction).frame(frame).on(body)).unwrap();
+    let surface = engine.scene.add_surface(smooth(friction).frame(frame).body(body)).unwrap();
     (engine, body, surface)
 }
 
@@ -152,12 +152,12 @@ fn a_finger_at_rest_that_sticks_damps_a_struck_bar_and_never_feeds_it() {
                 if step == 4 {
                     engine
                         .scene
-                        .report(t, ContactEvent::Impact(Impact::on(body).at([0.5, 0.015, 0.0])))
+                        .report(t, ContactEvent::Impact(Impact::on(body).at_m([0.5, 0.015, 0.0])))
                         .unwrap();
                 }
             }
         } else {
-            engine.scene.report(0.2, ContactEvent::Impact(Impact::on(body).at([0.5, 0.015, 0.0]))).unwrap();
+            engine.scene.report(0.2, ContactEvent::Impact(Impact::on(body).at_m([0.5, 0.015, 0.0]))).unwrap();
         }
         let sound = render(&mut engine, 44_100, || 512);
         let energy =
@@ -174,7 +174,8 @@ fn a_finger_at_rest_that_sticks_damps_a_struck_bar_and_never_feeds_it() {
 fn busy(mut block: impl FnMut() -> usize) -> (Vec<f32>, u64, asperity::Stats) {
     let (mut engine, body, surface) = bowed_bar(ROSIN);
     let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-    let flat = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(4e-6).frame(frame).on(body).stick_slip(ROSIN);
+    let flat =
+        Surface::flat(0.5, 0.03).unwrap().micro_relief_m(4e-6).frame(frame).body(body).stick_slip(ROSIN);
     let flat = engine.scene.add_surface(flat).unwrap();
     for step in 0..90 {
         let t = f64::from(step) / 90.0;
@@ -184,7 +185,7 @@ fn busy(mut block: impl FnMut() -> usize) -> (Vec<f32>, u64, asperity::Stats) {
             let sample = ContactSample::new([u, 0.4], 1.0 + t).sliding([speed_m_s, 0.0]);
             let event = match step - from_s {
                 ..0 => continue,
-                0 => ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(contact), surface, ChannelId(0), sample),
                 50 => ContactEvent::End { contact: ContactId(contact) },
                 51.. => continue,
                 _ => ContactEvent::moved(ContactId(contact), sample),
@@ -192,7 +193,7 @@ fn busy(mut block: impl FnMut() -> usize) -> (Vec<f32>, u64, asperity::Stats) {
             engine.scene.report(t, event).unwrap();
         }
         if step % 11 == 3 {
-            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at([0.1, 0.01, 0.0]))).unwrap();
+            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at_m([0.1, 0.01, 0.0]))).unwrap();
         }
     }
     let samples = 60_000;
@@ -242,7 +243,7 @@ fn random_strokes_on_random_bodies_stay_finite_and_below_what_friction_can_drive
             slip_speed_m_s: 10.0_f64.powf(-6.0 + 6.0 * rng.uniform()),
         };
         let surface =
-            Surface::flat(0.5, 0.1).unwrap().stick_slip(friction).at_strike_position(game % 4).on(body);
+            Surface::flat(0.5, 0.1).unwrap().stick_slip(friction).at_strike_position(game % 4).body(body);
         let surface = engine.scene.add_surface(surface).unwrap();
         for step in 0..40 {
             let t = f64::from(step) / 60.0;
@@ -271,23 +272,23 @@ fn friction_on_what_nobody_knows_the_motion_of_is_refused_by_name() {
     let mode = Mode { frequency_hz: 300.0, decay_per_s: 4.0, amplitude: 1.0, phase_rad: 0.0 };
     let model = ModalModel::new(vec![mode], 1.0).unwrap();
     let unknown = engine.scene.add_body(model.clone()).unwrap();
-    assert!(matches!(engine.scene.add_surface(smooth(ROSIN).on(unknown)), Err(AddError::CannotRub)));
+    assert!(matches!(engine.scene.add_surface(smooth(ROSIN).body(unknown)), Err(AddError::CannotRub)));
     assert!(matches!(engine.scene.add_surface(smooth(ROSIN)), Err(AddError::CannotRub)));
     let known = engine.scene.add_body(Body::new(model.clone()).mass_kg(0.3)).unwrap();
-    engine.scene.add_surface(smooth(ROSIN).on(known)).unwrap();
+    engine.scene.add_surface(smooth(ROSIN).body(known)).unwrap();
     // And it stays so: the body under it may not become one that cannot be rubbed.
     assert!(matches!(engine.scene.replace_body(known, model), Err(AddError::CannotRub)));
     let shaped = ModalModel::parse(&modes_file(&bar(), |m| 220.0 * (1 + m) as f64, 4.0)).unwrap();
     let shaped = engine.scene.add_body(shaped).unwrap();
-    let error = engine.scene.add_surface(smooth(ROSIN).on(shaped)).unwrap_err().to_string();
+    let error = engine.scene.add_surface(smooth(ROSIN).body(shaped)).unwrap_err().to_string();
     assert!(error.contains("frame"), "{error}");
     let slippery = Friction { mu_kinetic: 0.9, ..ROSIN };
-    let error = engine.scene.add_surface(smooth(slippery).on(known)).unwrap_err().to_string();
+    let error = engine.scene.add_surface(smooth(slippery).body(known)).unwrap_err().to_string();
     assert!(error.starts_with("mu_kinetic"), "{error}");
     let heavy = Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).mass_kg(0.0);
     assert!(engine.scene.add_body(heavy).unwrap_err().to_string().starts_with("mass_kg"));
     // Without friction among the exciters its numbers ring nothing and nobody has to know how the
     // body moves.
-    engine.scene.add_surface(smooth(ROSIN).excitation(Excitation::BOTH).on(unknown)).unwrap();
+    engine.scene.add_surface(smooth(ROSIN).excitation(Excitation::BOTH).body(unknown)).unwrap();
     assert!(Excitation::FRICTION.has(Exciter::Friction));
 }

@@ -8,7 +8,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::NullSink;
 use asperity::offline::{self, Options};
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material,
+    Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material,
     Renderer, Scene, SilentBecause, Stock, SurfaceId,
 };
 use asperity_dsp::rng::Rng;
@@ -44,7 +44,7 @@ impl Game {
     fn new(strikes_a_second: u32, strokes: bool) -> Self {
         let Engine { mut scene, renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
         let block = scene.add_body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()).unwrap();
-        let surface = scene.add_surface(plate(0.8).on(block)).unwrap();
+        let surface = scene.add_surface(plate(0.8).body(block)).unwrap();
         let strikes_every = 60u32.checked_div(strikes_a_second).unwrap_or(u32::MAX);
         Self { scene, renderer, block, surface, tick: 0, strikes_every, strokes }
     }
@@ -56,14 +56,14 @@ impl Game {
             let uv = [0.1 + 0.05 * t / SIDE_M, 0.5];
             let sample = ContactSample::new(uv, 0.6).sliding([0.05, 0.0]);
             let event = if self.tick == 0 {
-                ContactEvent::begin(ContactId(1), self.surface, Actuator(0), sample)
+                ContactEvent::begin(ContactId(1), self.surface, ChannelId(0), sample)
             } else {
                 ContactEvent::moved(ContactId(1), sample)
             };
             self.scene.report(t, event).unwrap();
         }
         if self.tick.is_multiple_of(self.strikes_every) && self.strikes_every < u32::MAX {
-            let impact = Impact::on(self.block).by(Material::STEEL, 0.01, 0.005);
+            let impact = Impact::on(self.block).striker(Material::STEEL, 0.01, 0.005);
             self.scene.report(t, ContactEvent::Impact(impact)).unwrap();
         }
         self.tick += 1;
@@ -287,7 +287,7 @@ fn a_device_that_is_lost_and_comes_back_does_not_bang() {
                 let due = began + Duration::from_secs_f64(due_s);
                 std::thread::sleep(due.saturating_duration_since(Instant::now()));
                 if tick.is_multiple_of(strikes_every) {
-                    let impact = Impact::on(block).by(Material::STEEL, 0.01, 0.005);
+                    let impact = Impact::on(block).striker(Material::STEEL, 0.01, 0.005);
                     scene.report(due_s, ContactEvent::Impact(impact)).unwrap();
                 }
                 tick += 1;

@@ -3,7 +3,7 @@
 use crate::closed_forms;
 
 use asperity::{
-    Actuator, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel,
+    BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel,
     Surface, SurfaceFrame,
 };
 use closed_forms::{FREE_BAR, PLATE_M, bar, bar_shape, modes_file, plate};
@@ -61,10 +61,10 @@ fn db(ratio: f64) -> f64 {
 
 #[test]
 fn a_bar_struck_anywhere_has_the_levels_of_its_closed_form() {
-    let end = struck(bar_body(), |body| Impact::on(body).at([0.0, 0.015, 0.0]));
+    let end = struck(bar_body(), |body| Impact::on(body).at_m([0.0, 0.015, 0.0]));
     let mut worst = 0.0_f64;
     for x in [0.03, 0.11, 0.2242, 0.31, 0.43, 0.5, 0.72, 0.965] {
-        let sound = struck(bar_body(), |body| Impact::on(body).at([0.5 * x, 0.01, 0.02]));
+        let sound = struck(bar_body(), |body| Impact::on(body).at_m([0.5 * x, 0.01, 0.02]));
         for m in 0..5 {
             let found = db(amplitude(&sound, bar_hz(m)) / amplitude(&end, bar_hz(m)));
             let exact = db(bar_shape(m, x) / 2.0);
@@ -82,8 +82,8 @@ fn a_bar_struck_anywhere_has_the_levels_of_its_closed_form() {
 #[test]
 fn a_mode_struck_on_its_node_line_is_forty_decibels_down() {
     let first_hz = 90.0 * (4.0 + (PLATE_M[0] / PLATE_M[1]).powi(2));
-    let sounding = struck(plate_body(), |body| Impact::on(body).at([0.25 * PLATE_M[0], 0.12, 0.0]));
-    let silent = struck(plate_body(), |body| Impact::on(body).at([0.5 * PLATE_M[0], 0.12, 0.0]));
+    let sounding = struck(plate_body(), |body| Impact::on(body).at_m([0.25 * PLATE_M[0], 0.12, 0.0]));
+    let silent = struck(plate_body(), |body| Impact::on(body).at_m([0.5 * PLATE_M[0], 0.12, 0.0]));
     let level = db(amplitude(&silent, first_hz) / amplitude(&sounding, first_hz));
     println!("{level:.1} dB");
     assert!(level <= -40.0, "{level} dB");
@@ -95,7 +95,7 @@ fn a_strike_where_the_own_amplitudes_belong_is_the_strike_without_a_place() {
     let at_m = shapes.points_m[shapes.struck_point];
     let placed = struck(bar_body(), |body| Impact {
         direction: Some([0.0, 0.0, 1.0]),
-        ..Impact::on(body).at([at_m[0], at_m[1], at_m[2]])
+        ..Impact::on(body).at_m([at_m[0], at_m[1], at_m[2]])
     });
     let plain = struck(bar_body(), Impact::on);
     let error: f64 = placed.iter().zip(&plain).map(|(a, b)| f64::from(a - b).powi(2)).sum();
@@ -110,15 +110,15 @@ fn a_finger_that_presses_harder_and_harder_holds_a_body_the_same_whatever_the_bl
         let body = engine.scene.add_body(plate_body()).unwrap();
         let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
         let surface =
-            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(0.0).frame(frame).on(body);
+            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(0.0).frame(frame).body(body);
         let surface = engine.scene.add_surface(surface).unwrap();
-        let blow = Impact::on(body).at([0.1, 0.1, 0.0]);
+        let blow = Impact::on(body).at_m([0.1, 0.1, 0.0]);
         engine.scene.report(0.0, ContactEvent::Impact(blow)).unwrap();
         for step in 0..50 {
             let t = f64::from(step) / 90.0;
             let sample = ContactSample::new([0.3, 0.4], 0.2 + 8.0 * t).sliding([0.0, 0.0]);
             let event = match step {
-                0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(1), sample),
             };
             engine.scene.report(t, event).unwrap();
@@ -138,9 +138,12 @@ fn slide(block: usize, speed_m_s: f64) -> Vec<f32> {
     let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
     let body = engine.scene.add_body(plate_body()).unwrap();
     let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-    let surface =
-        Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().of(Material::STEEL).micro_relief_m(4e-6).frame(frame);
-    let surface = engine.scene.add_surface(surface.on(body)).unwrap();
+    let surface = Surface::flat(PLATE_M[0], PLATE_M[1])
+        .unwrap()
+        .material(Material::STEEL)
+        .micro_relief_m(4e-6)
+        .frame(frame);
+    let surface = engine.scene.add_surface(surface.body(body)).unwrap();
     let (finger, other) = (ContactId(1), ContactId(2));
     for step in 0..60 {
         let t = f64::from(step) / 60.0;
@@ -148,14 +151,14 @@ fn slide(block: usize, speed_m_s: f64) -> Vec<f32> {
             let sample =
                 ContactSample::new([0.1 + speed_m_s * t / PLATE_M[0], v], 0.6).sliding([speed_m_s, 0.0]);
             let event = match step {
-                0 => ContactEvent::begin(contact, surface, Actuator(0), sample),
+                0 => ContactEvent::begin(contact, surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(contact, sample),
             };
             engine.scene.report(t, event).unwrap();
         }
         if step % 7 == 3 {
             let at_m = [0.05 * f64::from(step % 8), 0.1, 0.0];
-            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at(at_m))).unwrap();
+            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at_m(at_m))).unwrap();
         }
     }
     render(&mut engine, 44_100, block)
@@ -179,13 +182,13 @@ fn a_stroke_along_a_node_line_leaves_that_mode_out() {
         let body = engine.scene.add_body(plate_body()).unwrap();
         let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
         let surface =
-            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(4e-6).frame(frame).on(body);
+            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(4e-6).frame(frame).body(body);
         let surface = engine.scene.add_surface(surface).unwrap();
         for step in 0..60 {
             let t = f64::from(step) / 60.0;
             let sample = ContactSample::new([0.2 + 0.5 * t, v], 0.6).sliding([0.2, 0.0]);
             let event = match step {
-                0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(1), sample),
             };
             engine.scene.report(t, event).unwrap();
@@ -214,8 +217,8 @@ fn an_impossible_place_is_refused_by_name() {
     let mut engine = Config::default().build().unwrap();
     let body = engine.scene.add_body(bar_body()).unwrap();
     for (bad, field) in [
-        (Impact::on(body).at([f64::NAN, 0.0, 0.0]), "at_m"),
-        (Impact { direction: Some([0.0; 3]), ..Impact::on(body).at([0.0; 3]) }, "direction"),
+        (Impact::on(body).at_m([f64::NAN, 0.0, 0.0]), "at_m"),
+        (Impact { direction: Some([0.0; 3]), ..Impact::on(body).at_m([0.0; 3]) }, "direction"),
         (Impact { direction: Some([f64::INFINITY, 0.0, 0.0]), ..Impact::on(body) }, "direction"),
     ] {
         let refused = engine.scene.report(0.0, ContactEvent::Impact(bad)).unwrap_err();
@@ -223,7 +226,7 @@ fn an_impossible_place_is_refused_by_name() {
     }
     // The nearest point of the body counts: a place far off is held at the limit of places, and
     // counted.
-    engine.scene.report(0.0, ContactEvent::Impact(Impact::on(body).at([1e9, 0.0, 0.0]))).unwrap();
+    engine.scene.report(0.0, ContactEvent::Impact(Impact::on(body).at_m([1e9, 0.0, 0.0]))).unwrap();
     assert_eq!(engine.scene.stats().held, 1);
 }
 
@@ -232,7 +235,7 @@ fn held(fingers: &[(f64, f64)], let_go_s: f64, seconds: f64) -> Vec<f32> {
     let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
     let body = engine.scene.add_body(bar_body()).unwrap();
     let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-    let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).on(body);
+    let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).body(body);
     let surface = engine.scene.add_surface(surface).unwrap();
     let at = [0.0, 0.015, 0.0];
     for step in 0..(60.0 * let_go_s) as u32 {
@@ -240,20 +243,20 @@ fn held(fingers: &[(f64, f64)], let_go_s: f64, seconds: f64) -> Vec<f32> {
         for (i, (x, force_n)) in fingers.iter().enumerate() {
             let sample = ContactSample::new([*x, 0.5], *force_n).sliding([0.0; 2]);
             let event = match step {
-                0 => ContactEvent::begin(ContactId(i as u64), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(i as u64), surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(i as u64), sample),
             };
             engine.scene.report(t, event).unwrap();
         }
         if step == 30 {
-            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at_m(at))).unwrap();
         }
     }
     for i in 0..fingers.len() {
         engine.scene.report(let_go_s, ContactEvent::end(ContactId(i as u64))).unwrap();
     }
     let again_s = seconds - 1.0;
-    engine.scene.report(again_s, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+    engine.scene.report(again_s, ContactEvent::Impact(Impact::on(body).at_m(at))).unwrap();
     render(&mut engine, (seconds * RATE_HZ) as usize, 512)
 }
 
@@ -299,12 +302,12 @@ fn a_body_that_was_held_and_has_come_to_rest_rings_as_one_that_never_was_to_the_
         let mut engine = Config::default().build().unwrap();
         let body = engine.scene.add_body(bar_body()).unwrap();
         let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-        let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).on(body);
+        let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).body(body);
         let surface = engine.scene.add_surface(surface).unwrap();
-        let mut events = vec![(struck_s, ContactEvent::Impact(Impact::on(body).at([0.0, 0.015, 0.0])))];
+        let mut events = vec![(struck_s, ContactEvent::Impact(Impact::on(body).at_m([0.0, 0.015, 0.0])))];
         if let Some(force_n) = held_n {
             let sample = ContactSample::new([0.28, 0.5], force_n).sliding([0.0; 2]);
-            events.push((0.0, ContactEvent::begin(ContactId(0), surface, Actuator(0), sample)));
+            events.push((0.0, ContactEvent::begin(ContactId(0), surface, ChannelId(0), sample)));
             events.extend(
                 (1..30).map(|step| (f64::from(step) / 60.0, ContactEvent::moved(ContactId(0), sample))),
             );
@@ -332,7 +335,7 @@ fn a_contact_that_tells_its_own_place_is_there_and_not_where_its_surface_lies() 
         // The frame lies along the middle, where the second mode along has a node line.
         let lies =
             SurfaceFrame::new([0.5 * PLATE_M[0], 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]).unwrap();
-        let surface = Surface::flat(0.3, 0.1).unwrap().micro_relief_m(4e-6).on(body);
+        let surface = Surface::flat(0.3, 0.1).unwrap().micro_relief_m(4e-6).body(body);
         let surface = if frame { surface.frame(lies) } else { surface };
         let surface = engine.scene.add_surface(surface).unwrap();
         for step in 0..60 {
@@ -340,7 +343,7 @@ fn a_contact_that_tells_its_own_place_is_there_and_not_where_its_surface_lies() 
             let sample = ContactSample::new([0.2 + 0.5 * t, 0.0], 0.6).sliding([0.15, 0.0]);
             let sample = ContactSample { at_m: at_m.map(|[x, y, z]| [x, y + 0.15 * t, z]), ..sample };
             let event = match step {
-                0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(1), sample),
             };
             engine.scene.report(t, event).unwrap();

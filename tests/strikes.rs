@@ -37,7 +37,7 @@ fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Int
     let asperity::Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     // Full scale is an impact like this one: what is 160 dB below it is put to rest.
     let model = ModalModel::new(modes.to_vec(), 2.0 * mass_kg(contact_s) * SPEED_M_S).unwrap();
-    let body = scene.add_body(asperity::Body::new(model).of(material(contact_s))).unwrap();
+    let body = scene.add_body(asperity::Body::new(model).material(material(contact_s))).unwrap();
     let impact = Impact {
         body,
         other: None,
@@ -156,8 +156,9 @@ fn foam(mass_kg: f64, rate_hz: f64) -> (f64, u64) {
         Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
     let foam = Material { young_pa: 5e4, poisson: 0.3, ..Material::RUBBER };
     let mode = Mode { frequency_hz: 60.0, decay_per_s: 8.0, amplitude: 1.0, phase_rad: 0.0 };
-    let body =
-        scene.add_body(asperity::Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).of(foam)).unwrap();
+    let body = scene
+        .add_body(asperity::Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).material(foam))
+        .unwrap();
     let impact = Impact {
         body,
         other: None,

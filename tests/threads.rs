@@ -5,7 +5,7 @@ use crate::common;
 use crate::steps;
 
 use asperity::{
-    Actuator, ActuatorSettings, ClockMode, Config, ContactEvent, ContactId, ContactSample, Material,
+    ActuatorSettings, ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Material,
     ModalModel, Mode, Renderer, Scene, SurfaceId,
 };
 use common::{grating, peak};
@@ -24,7 +24,7 @@ fn low_body() -> ModalModel {
 fn engine(config: Config) -> (Scene, Renderer, SurfaceId, asperity::BodyId) {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(low_body()).unwrap();
-    let surface = scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap();
+    let surface = scene.add_surface(grating(2e-3, 2e-5).body(body)).unwrap();
     (scene, renderer, surface, body)
 }
 
@@ -63,7 +63,7 @@ fn two_threads_lose_no_event_and_no_memory_between_them() {
         let time_s = began.elapsed().as_secs_f64();
         let contact = ContactId(reported % 12);
         let event = match reported % 97 {
-            0..=11 => ContactEvent::begin(contact, surface, Actuator(0), sample_at(time_s)),
+            0..=11 => ContactEvent::begin(contact, surface, ChannelId(0), sample_at(time_s)),
             12..=14 => ContactEvent::end(contact),
             _ => ContactEvent::moved(contact, sample_at(time_s)),
         };
@@ -73,9 +73,9 @@ fn two_threads_lose_no_event_and_no_memory_between_them() {
             handed_back += 1;
         }
         if reported.is_multiple_of(1000) {
-            swaps += u64::from(scene.replace_surface(surface, grating(2e-3, 1e-5).on(body)).is_ok());
+            swaps += u64::from(scene.replace_surface(surface, grating(2e-3, 1e-5).body(body)).is_ok());
             swaps += u64::from(
-                scene.replace_body(body, asperity::Body::new(low_body()).of(Material::GLASS)).is_ok(),
+                scene.replace_body(body, asperity::Body::new(low_body()).material(Material::GLASS)).is_ok(),
             );
         }
         freed += scene.collect() as u64;
@@ -123,7 +123,7 @@ fn play(
 /// The game's clock as a function of the audio's; `None` while the game stands still.
 fn stroke_with(clock: impl Fn(f64) -> Option<f64>) -> (asperity::Stats, Vec<f32>, Vec<f32>) {
     let (mut scene, mut renderer, surface, _) = engine(live());
-    scene.report(0.0, ContactEvent::begin(ContactId(1), surface, Actuator(0), sample_at(0.0))).unwrap();
+    scene.report(0.0, ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample_at(0.0))).unwrap();
     let mut next = 0u64;
     let (haptic, audio) = play(&mut scene, &mut renderer, 4.0, |scene, now_s| {
         if now_s * 60.0 < next as f64 {

@@ -236,7 +236,7 @@ fn strike(mode: Mode, speed_m_s: f64, radius_m: f64, rate_hz: f64) -> Render {
     let asperity::Engine { mut scene, renderer, .. } =
         Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
     let model = ModalModel::new(vec![mode], 1.0).unwrap();
-    let body = scene.add_body(asperity::Body::new(model).of(Material::STEEL)).unwrap();
+    let body = scene.add_body(asperity::Body::new(model).material(Material::STEEL)).unwrap();
     let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     let log = format!(
         r#"{{"t":0.1,"event":"impact","body":"b","speed_m_s":{speed_m_s},"mass_kg":0.001,"radius_m":{radius_m},"striker":"steel"}}"#

@@ -42,7 +42,7 @@ impl Tap for Leap {
 fn heard(plate: &str, (speed_m_s, force_n): (f64, f64), excitation: Excitation) -> (Vec<f32>, f64) {
     let Engine { mut scene, renderer, .. } = si_config().build().unwrap();
     let body = scene.add_body(disc()).unwrap();
-    let id = scene.add_surface(surface(plate).on(body).excitation(excitation)).unwrap();
+    let id = scene.add_surface(surface(plate).body(body).excitation(excitation)).unwrap();
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
     let log = stroke(SIDE_M, speed_m_s, force_n, if speed_m_s > 0.15 { 0.6 } else { 1.0 });
     let mut leap = Leap(0.0);

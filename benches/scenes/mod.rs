@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode,
+    ActuatorSettings, ChannelId, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode,
     Renderer, Scene, Surface, SurfaceId, Wrap,
 };
 use asperity_dsp::rng::Rng;
@@ -96,7 +96,7 @@ impl Running {
         let mut surfaces = Vec::new();
         for i in 0..plan.contacts {
             let body = scene.add_body(body(plan.modes, i as u64)).expect("there is room");
-            surfaces.push(scene.add_surface(surface(&map).on(body)).expect("there is room"));
+            surfaces.push(scene.add_surface(surface(&map).body(body)).expect("there is room"));
         }
         let haptic = vec![vec![0.0; frames]; renderer.haptic_channels()];
         let audio = vec![0.0; frames];
@@ -134,7 +134,7 @@ impl Running {
         for (i, surface) in self.surfaces.iter().enumerate() {
             let (contact, sample) = (ContactId(i as u64), self.sample(i, time_s));
             let event = if first {
-                ContactEvent::begin(contact, *surface, Actuator(i as u16), sample)
+                ContactEvent::begin(contact, *surface, ChannelId(i as u16), sample)
             } else {
                 ContactEvent::moved(contact, sample)
             };

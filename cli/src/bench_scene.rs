@@ -1,7 +1,7 @@
 //! Scenes made in memory for measuring: fingers that stroke plates whose bodies ring.
 
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Material, ModalModel, Mode, Renderer,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Extent, Material, ModalModel, Mode, Renderer,
     Scene, Surface, SurfaceId, Wrap,
 };
 use asperity_surface::height_map::HeightMap;
@@ -85,7 +85,9 @@ impl Bench {
         for _ in 0..load.bodies.max(1) {
             let surface = Surface::new(map.clone(), 0.14, 0.14).ok()?;
             let surface = if load.modes_per_body > 0 {
-                surface.on(scene.add_body(asperity::Body::new(model.clone()).of(Material::CERAMIC)).ok()?)
+                surface.body(
+                    scene.add_body(asperity::Body::new(model.clone()).material(Material::CERAMIC)).ok()?,
+                )
             } else {
                 surface
             };
@@ -141,7 +143,7 @@ impl Bench {
                 (_, true) => ContactEvent::end(id),
                 (0, _) => {
                     let surface = self.surfaces[contact % self.surfaces.len()];
-                    ContactEvent::begin(id, surface, Actuator(0), sample)
+                    ContactEvent::begin(id, surface, ChannelId(0), sample)
                 }
                 _ => ContactEvent::moved(id, sample),
             };

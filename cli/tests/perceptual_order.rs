@@ -105,7 +105,7 @@ fn struck(modes: &[Mode], level: usize) -> Vec<f32> {
     (0..31).for_each(|_| renderer.report_load(0.7));
     (0..level).for_each(|_| renderer.report_load(0.9));
     // A contact of 10 µs, which is flat to 20 kHz.
-    let impact = Impact::from_impulse(body, IMPULSE_N_S, 20.0, 1.0).by(Material::STEEL, 2.5e-4, 2e-5);
+    let impact = Impact::from_impulse(body, IMPULSE_N_S, 20.0, 1.0).striker(Material::STEEL, 2.5e-4, 2e-5);
     scene.report(0.0, ContactEvent::Impact(impact)).unwrap();
     let (mut haptic, mut audio) = (vec![0.0; 44_100], vec![0.0; 44_100]);
     renderer.render(&mut [&mut haptic], &mut [&mut audio]);

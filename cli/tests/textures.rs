@@ -5,7 +5,7 @@ use crate::maps;
 use crate::support;
 use crate::surfaces;
 
-use asperity_pictures::metamer::{Feel, MetamerOptions};
+use asperity_pictures::metamer::{MetamerOptions, Statistics};
 use asperity_surface::image_io::{Channel, load_channel};
 use asperity_surface::raster::Raster;
 use maps::with_maps;
@@ -95,7 +95,7 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
         let (offset, scale) = (number(&made, "offset"), number(&made, "scale"));
         let heights = file.map(|grey| offset + scale * grey);
         let settings = MetamerOptions { bands: 3, ..MetamerOptions::default() };
-        let mut feel = Feel::new(&reference, 128, 128, &settings).unwrap();
+        let mut feel = Statistics::new(&reference, 128, 128, &settings).unwrap();
         let found = feel.distance(&heights, true);
         for (told, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
             let told = number(&made, told);

@@ -30,7 +30,7 @@ mod solid;
 use asperity::live::ports::{Force, ForceRow, Of};
 use asperity::surface::sand::{Buried, SandDesign, SandSource};
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Scene, Surface, SurfaceId, TipLaw,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Scene, Surface, SurfaceId, TipLaw,
 };
 use device::{Device, Tick};
 use picture::{Curve, svg};
@@ -103,7 +103,7 @@ fn run(
     for (index, tick) in ticks.iter().enumerate() {
         let sample = ContactSample::at_depth([0.5; 2], tick.depth_m).sliding([0.0; 2]);
         let event = match index {
-            0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+            0 => ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample),
             _ => ContactEvent::moved(ContactId(1), sample),
         };
         scene.report(tick.time_s, event)?;

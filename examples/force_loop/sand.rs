@@ -5,7 +5,7 @@ use crate::picture::{Curve, svg};
 use asperity::live::ports::{Force, ForceRow, Of};
 use asperity::surface::sand::simulation::Pose;
 use asperity::surface::sand::{SandDesign, SandLaw, SandSimulation, SandSource};
-use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface};
+use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Surface};
 use std::error::Error;
 use std::path::Path;
 
@@ -82,7 +82,7 @@ fn rows(
         scene.report(
             t,
             match step {
-                0 => ContactEvent::begin(ContactId(1), id, Actuator(0), sample),
+                0 => ContactEvent::begin(ContactId(1), id, ChannelId(0), sample),
                 _ => ContactEvent::moved(ContactId(1), sample),
             },
         )?;

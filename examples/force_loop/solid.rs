@@ -4,7 +4,7 @@ use crate::picture::{Curve, svg};
 use asperity::live::ports::{Force, ForcePort, ForceRow, Of};
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity::surface::solid_noise::{SolidCut, SolidNoise};
-use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceFrame};
+use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceFrame};
 use std::error::Error;
 use std::path::Path;
 
@@ -54,7 +54,7 @@ fn stroke(
         scene.report(
             t,
             match step {
-                0 => ContactEvent::begin(ContactId(1), id, Actuator(0), sample(t)),
+                0 => ContactEvent::begin(ContactId(1), id, ChannelId(0), sample(t)),
                 _ => ContactEvent::moved(ContactId(1), sample(t)),
             },
         )?;
@@ -112,7 +112,7 @@ fn height_m(surface: Surface, sample: ContactSample) -> Result<f64, Failed> {
     }
     let Engine { mut scene, mut renderer, .. } = Config::default().build()?;
     let id = scene.add_surface(surface)?;
-    scene.report(0.0, ContactEvent::begin(ContactId(1), id, Actuator(0), sample))?;
+    scene.report(0.0, ContactEvent::begin(ContactId(1), id, ChannelId(0), sample))?;
     let mut last = Last(0.0);
     for _ in 0..40 {
         renderer.render_tapped(&mut [&mut [0.0; 64]], &mut [&mut [0.0; 64]], &mut last);

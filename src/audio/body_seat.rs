@@ -1,7 +1,7 @@
 //! A body's place on the audio half, or one where a body rings out that has left its own.
 
 use crate::audio::smoothed::Smoothed;
-use crate::link::message::{Dead, Made};
+use crate::link::message::{Made, Retired};
 use crate::link::ring::Sender;
 use crate::model::body::{Body, MAX_SENDS, Sends};
 use crate::model::id::BodyId;
@@ -291,13 +291,13 @@ impl BodySeat {
     }
 
     /// Sends a body that has rung out home.
-    pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Dead>) {
+    pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Retired>) {
         if self.id.is_none() {
             self.look(position);
         }
         if self.id.is_none() && self.is_silent(position) {
-            let kept = self.take().and_then(|body| match home.send(Dead::Body(body)) {
-                Err(Dead::Body(body)) => Some(body),
+            let kept = self.take().and_then(|body| match home.send(Retired::Body(body)) {
+                Err(Retired::Body(body)) => Some(body),
                 _ => None,
             });
             (self.current, self.of) = kept.map(|body| (body.slot, body.of)).unzip();

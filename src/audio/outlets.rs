@@ -1,6 +1,6 @@
 //! Outlets: the audio half's ends of the ports that are open.
 
-use crate::link::message::Dead;
+use crate::link::message::Retired;
 use crate::link::outlet::Outlet;
 use crate::link::ring::Sender;
 use crate::link::tap::{ContactBlock, Tap};
@@ -36,12 +36,12 @@ impl Outlets {
     }
 
     /// Sends those home that nobody reads any more.
-    pub(crate) fn tidy(&mut self, to_game: &mut Sender<Dead>) {
+    pub(crate) fn tidy(&mut self, to_game: &mut Sender<Retired>) {
         let mut at = 0;
         while at < self.open.len() {
             if self.open[at].is_closed() && to_game.free() > 0 {
                 // There is room: see above.
-                let _ = to_game.send(Dead::Outlet(self.open.swap_remove(at)));
+                let _ = to_game.send(Retired::Outlet(self.open.swap_remove(at)));
                 self.watching = self.open.iter().any(|outlet| outlet.watches_contacts());
             } else {
                 at += 1;

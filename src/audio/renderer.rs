@@ -23,7 +23,7 @@ use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
 use crate::audio::voice::{Phase, Scratch, Voice};
-use crate::link::message::{Dead, Message};
+use crate::link::message::{Message, Retired};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
 use crate::link::tap::{NoTap, Tap};
@@ -78,7 +78,7 @@ pub struct Renderer {
     /// Groups of modes left out in the present stretch.
     groups_shed: usize,
     from_game: Receiver<Message>,
-    to_game: Sender<Dead>,
+    to_game: Sender<Retired>,
     counters: Arc<Counters>,
     muted: bool,
     paused: bool,
@@ -96,7 +96,7 @@ impl Renderer {
         kernel: Level,
         probe: PreparedProbe,
         from_game: Receiver<Message>,
-        to_game: Sender<Dead>,
+        to_game: Sender<Retired>,
         counters: Arc<Counters>,
     ) -> Result<Self, ConfigError> {
         let rate = config.inner_rate_hz();

@@ -4,7 +4,7 @@
 //! old one then goes home to be freed. A surface that is removed stays until the contacts on it
 //! have faded.
 
-use crate::link::message::Dead;
+use crate::link::message::Retired;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
@@ -73,7 +73,7 @@ impl Seat {
         surface: Box<SurfaceSlot>,
         position: u64,
         sample_rate_hz: f64,
-        home: &mut Sender<Dead>,
+        home: &mut Sender<Retired>,
     ) -> Change {
         self.id = Some(id);
         self.removed = false;
@@ -87,7 +87,7 @@ impl Seat {
         if self.previous.is_some() {
             if let Some(superseded) = self.waiting.replace(surface) {
                 // There is room: see above. Were there none, the surface would be freed here.
-                let _ = home.send(Dead::Surface(superseded));
+                let _ = home.send(Retired::Surface(superseded));
             }
         } else {
             self.start_change(surface, position);
@@ -127,7 +127,7 @@ impl Seat {
     }
 
     /// Sends home what nobody needs any more; called on the absolute sample grid.
-    pub(crate) fn tidy(&mut self, position: u64, in_use: impl Fn() -> bool, home: &mut Sender<Dead>) {
+    pub(crate) fn tidy(&mut self, position: u64, in_use: impl Fn() -> bool, home: &mut Sender<Retired>) {
         let faded = (position.saturating_sub(self.change_began)) as f64 >= self.change_samples;
         if faded
             && self.previous.is_some()
@@ -204,10 +204,10 @@ impl Seat {
     }
 
     /// The force at which the surface carries a tip below a place, N.
-    pub(crate) fn carries_n(&mut self, uv: [f64; 2], depth_m: f64) -> f64 {
+    pub(crate) fn support_force_n(&mut self, uv: [f64; 2], depth_m: f64) -> f64 {
         let Some(slot) = &mut self.current else { return 0.0 };
         let position_m = [uv[0] * slot.surface.width_m, uv[1] * slot.surface.height_m];
-        slot.surface.carries_n(position_m, depth_m).unwrap_or(0.0)
+        slot.surface.support_force_n(position_m, depth_m).unwrap_or(0.0)
     }
 
     /// Results of the source, at the end of a render.
@@ -275,10 +275,10 @@ impl Seat {
     }
 }
 
-fn retire(seat: &mut Option<Box<SurfaceSlot>>, home: &mut Sender<Dead>) -> bool {
-    match seat.take().map(|surface| home.send(Dead::Surface(surface))) {
+fn retire(seat: &mut Option<Box<SurfaceSlot>>, home: &mut Sender<Retired>) -> bool {
+    match seat.take().map(|surface| home.send(Retired::Surface(surface))) {
         None | Some(Ok(())) => true,
-        Some(Err(Dead::Surface(surface))) => {
+        Some(Err(Retired::Surface(surface))) => {
             *seat = Some(surface);
             false
         }

@@ -1,7 +1,7 @@
 //! Recording of a live game's reports as a contact log.
 
 use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, LogTouching, Names};
-use crate::model::event::{Actuator, ContactEvent};
+use crate::model::event::{ChannelId, ContactEvent};
 use crate::model::id::{BodyId, Place, ProbeId, SurfaceId};
 use std::collections::{HashMap, VecDeque};
 use std::io::{self, BufWriter, Write};
@@ -174,7 +174,7 @@ impl Recording {
 
     fn hand(
         &self,
-        actuator: Option<Actuator>,
+        actuator: Option<ChannelId>,
         probe: Option<ProbeId>,
         holder: Option<BodyId>,
         gain: f64,

@@ -20,7 +20,7 @@ use crate::game::levels::{BodyLevel, Levels, Trials};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
-use crate::link::message::{Dead, Made, Message};
+use crate::link::message::{Made, Message, Retired};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
 use crate::model::body::Body;
@@ -77,7 +77,7 @@ pub struct Scene {
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     pub(crate) to_audio: Sender<Message>,
-    pub(crate) from_audio: Receiver<Dead>,
+    pub(crate) from_audio: Receiver<Retired>,
     pub(crate) counters: Arc<Counters>,
     recording: Option<Recording>,
     /// Bodies as they were given, for another rate.
@@ -156,7 +156,7 @@ impl Scene {
         (kernel, trials): (Level, Trials),
         clock: Clock,
         to_audio: Sender<Message>,
-        from_audio: Receiver<Dead>,
+        from_audio: Receiver<Retired>,
         counters: Arc<Counters>,
     ) -> Self {
         Self {

@@ -24,7 +24,7 @@
 //! | a step of 0 s, or a position that is no number | refused |
 
 use crate::model::bad_value::{BadValue, within};
-use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample};
+use crate::model::event::{ChannelId, ContactEvent, ContactId, ContactSample};
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::SurfaceId;
 use asperity_dsp::limits::{self, Range};
@@ -93,7 +93,7 @@ impl TipStep {
     /// Event for [`Scene::report`](crate::Scene::report), felt by an actuator; none where nothing
     /// is touched. `ids` are the surfaces in the order in which the tip was given them.
     #[must_use]
-    pub fn event(self, ids: &[SurfaceId], contact: ContactId, actuator: Actuator) -> Option<ContactEvent> {
+    pub fn event(self, ids: &[SurfaceId], contact: ContactId, actuator: ChannelId) -> Option<ContactEvent> {
         match self {
             Self::Free => None,
             Self::Begin(index, sample) => {

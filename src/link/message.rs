@@ -81,7 +81,7 @@ pub(crate) struct Felt {
 }
 
 /// Audio thread → game thread: what has to be freed.
-pub(crate) enum Dead {
+pub(crate) enum Retired {
     Surface(Box<SurfaceSlot>),
     /// A body that has rung out.
     Body(Made),

@@ -2,7 +2,7 @@
 //!
 //! A tap runs on the audio half. One that is used live must not allocate, lock or wait.
 
-use crate::model::event::{Actuator, ContactId};
+use crate::model::event::{ChannelId, ContactId};
 use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_surface::height_field::MAX_BLOCK;
 
@@ -15,7 +15,7 @@ pub struct ContactBlock<'a> {
     /// The contact.
     pub contact: ContactId,
     /// Who feels it; none = it is heard only.
-    pub actuator: Option<Actuator>,
+    pub actuator: Option<ChannelId>,
     /// Smoothed path on the surface, metres.
     pub position_m: &'a [[f64; 2]],
     /// Texture coordinates of the path.
@@ -61,7 +61,7 @@ impl ContactRows {
     pub(crate) fn block(
         &self,
         contact: ContactId,
-        actuator: Option<Actuator>,
+        actuator: Option<ChannelId>,
         first_sample: u64,
         count: usize,
     ) -> ContactBlock<'_> {

@@ -8,9 +8,10 @@ use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{AudioEntry, BodyEntry, SceneFile, SurfaceEntry};
 use crate::game::scene::Scene;
-use crate::load::maker::Maker;
+use crate::load::maker::Loader;
 use crate::load::maps::Maps;
 use crate::model::body::Body;
+use crate::model::bus::BusId;
 use crate::model::id::BodyId;
 use crate::model::surface::Surface;
 use asperity_surface::sand::SandWorker;
@@ -47,7 +48,7 @@ impl Scene {
         overrides: &Overrides<'_>,
     ) -> Result<Changes, FileError> {
         let workers = RefCell::default();
-        let maker = Maker {
+        let maker = Loader {
             files: overrides.files,
             maps: &Maps::default(),
             own: overrides.own,
@@ -80,7 +81,7 @@ impl Scene {
     ) -> Result<(), FileError> {
         for (index, (old, new)) in before.audio.iter().zip(&after.audio).enumerate() {
             if let Some(gain) = new.gain.filter(|gain| old.gain != Some(*gain)) {
-                self.set_audio_gain(index, gain).map_err(FileError::told)?;
+                self.set_audio_gain(BusId(index), gain).map_err(FileError::told)?;
                 changes.done.push(format!("audio {}: gain {gain}", index + 1));
             }
         }
@@ -125,7 +126,7 @@ struct New<'a> {
 
 impl<'a> New<'a> {
     fn make(
-        maker: &Maker<'_>,
+        maker: &Loader<'_>,
         (gains, strike_gain): (&[f64], impl Fn(&String) -> f64),
         before: &SceneFile,
         after: &'a SceneFile,
@@ -182,7 +183,7 @@ impl<'a> New<'a> {
         }
         for (SurfaceEntry { name, body, .. }, mut surface) in self.surfaces {
             if let Some(body) = body.as_ref().and_then(|body| names.bodies.get(body)) {
-                surface = surface.on(*body);
+                surface = surface.body(*body);
             }
             let word = match names.surfaces.get(name) {
                 Some(id) => scene.replace_surface(*id, surface).map(|()| "changed"),

@@ -1,12 +1,13 @@
 //! Edits of a recording, made again.
 
-use super::maker::Maker;
+use super::maker::Loader;
 use super::maps::Maps;
 use crate::files::contact_log::{LogEdit, LogSurface, Names};
 use crate::files::scene_file::{MakeSource, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 use crate::game::scene::Scene;
-use crate::model::event::Actuator;
+use crate::model::bus::BusId;
+use crate::model::event::ChannelId;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::Surface;
 use std::path::Path;
@@ -49,9 +50,9 @@ impl Edits<'_> {
                 let new = is.body().map_err(FileError::told)?;
                 scene.replace_body(known_body(names, body)?, new)
             }
-            LogEdit::BodyBus { body, bus } => scene.set_body_bus(known_body(names, body)?, *bus),
+            LogEdit::BodyBus { body, bus } => scene.set_body_bus(known_body(names, body)?, BusId(*bus)),
             LogEdit::BodySend { body, bus, gain } => {
-                scene.set_body_send(known_body(names, body)?, *bus, *gain)
+                scene.set_body_send(known_body(names, body)?, BusId(*bus), *gain)
             }
             LogEdit::BodyGain { body, gain } => scene.set_body_gain(known_body(names, body)?, *gain),
             LogEdit::Mute { muted } => scene.set_muted(*muted),
@@ -81,8 +82,8 @@ impl Edits<'_> {
                     right,
                 ));
             }
-            LogEdit::HapticGain { actuator, gain } => scene.set_haptic_gain(Actuator(*actuator), *gain),
-            LogEdit::AudioGain { bus, gain } => scene.set_audio_gain(*bus, *gain),
+            LogEdit::HapticGain { actuator, gain } => scene.set_haptic_gain(ChannelId(*actuator), *gain),
+            LogEdit::AudioGain { bus, gain } => scene.set_audio_gain(BusId(*bus), *gain),
         }
         .map_err(FileError::told)
     }
@@ -98,7 +99,7 @@ impl Edits<'_> {
         if let Some(table) = &is.is {
             let entry =
                 SurfaceEntry::read(table.clone(), Path::new(is.folder.as_deref().unwrap_or_default()));
-            let maker = Maker {
+            let maker = Loader {
                 files: self.files,
                 maps: &Maps::default(),
                 own: self.own,

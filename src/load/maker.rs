@@ -1,6 +1,6 @@
 //! From what a scene file says of bodies, surfaces and actuators to what the engine takes.
 
-pub(crate) use super::made_with::Maker;
+pub(crate) use super::loader::Loader;
 use super::maps::{MapOf, Values};
 use super::source::Ground;
 use crate::files::actuator_profile::ActuatorPreset;
@@ -9,6 +9,7 @@ use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEn
 use crate::files::{FileError, Files};
 use crate::model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};
 use crate::model::body::Body;
+use crate::model::bus::BusId;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
@@ -17,7 +18,7 @@ use asperity_surface::height_map::Extent;
 use asperity_surface::wrap::Wrap;
 use std::path::Path;
 
-impl<'a> Maker<'a> {
+impl<'a> Loader<'a> {
     /// A body, on the bus that it names; its impacts are as loud as it says, or else as
     /// `strike_gain` does.
     pub fn body(
@@ -56,7 +57,7 @@ impl<'a> Maker<'a> {
             model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::told)?;
         }
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
-        let body = Body::new(model).of(material).on_bus(bus);
+        let body = Body::new(model).material(material).bus(BusId(bus));
         let strike_gain = Some(entry.strike_gain.unwrap_or(strike_gain));
         let least_time_s = entry.least_time_s.unwrap_or(0.0);
         Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, least_time_s, ..body })
@@ -80,11 +81,11 @@ impl<'a> Maker<'a> {
         let source = ground.source(&entry.source)?;
         let surface = Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::told)?;
         let surface = match (material, &entry.source) {
-            (Some(material), Source::Flat) => surface.of(material),
+            (Some(material), Source::Flat) => surface.material(material),
             // How rough a pictured surface is, its material does not tell: it may be glazed or
             // sanded.
             (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
-                surface.of(material).roughness(Roughness::FromSource)
+                surface.material(material).roughness(Roughness::FromSource)
             }
             // Other sources bring a finish of their own.
             _ => surface,
@@ -119,7 +120,7 @@ impl<'a> Maker<'a> {
         surface.described = Some(Box::new(LogSurface { is: Some(table.clone()), folder, material }));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name));
         Ok(match body {
-            Some(body) => surface.on(*body),
+            Some(body) => surface.body(*body),
             None => surface,
         })
     }

@@ -6,7 +6,7 @@ use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{BodyEntry, SurfaceEntry, probe_of};
 use crate::game::scene::Scene;
-use crate::load::maker::Maker;
+use crate::load::maker::Loader;
 use crate::load::maps::Maps;
 use crate::model::body::Body;
 use crate::model::id::BodyId;
@@ -35,7 +35,7 @@ impl std::fmt::Debug for ReadSurface {
 
 impl Scene {
     /// A body from the keys of a scene file's `[[body]]`; `name` may be missing, and `bus` has no
-    /// place here: say [`Body::on_bus`]. Paths lie relative to `folder`. A body that has no
+    /// place here: say [`Body::bus`]. Paths lie relative to `folder`. A body that has no
     /// `strike_gain` is struck as loudly as those of the scene file, whose the level policy has
     /// found; 1 where nothing was found.
     ///
@@ -46,7 +46,7 @@ impl Scene {
     /// let Engine { mut scene, .. } = Config::default().build()?;
     /// let table = "stock = \"bowl\"\nsize_m = 0.1\nmaterial = \"brass\"";
     /// let bell = scene.read_body(table, "".as_ref(), &Overrides::default())?;
-    /// scene.add_body(bell.on_bus(0))?;
+    /// scene.add_body(bell.bus(asperity::BusId(0)))?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -99,7 +99,7 @@ impl Scene {
         let surface =
             self.maker(overrides, &Maps::default(), Some(&workers)).surface(&entry, material, names)?;
         let surface = match body {
-            Some(body) => surface.on(body),
+            Some(body) => surface.body(body),
             None => surface,
         };
         Ok(ReadSurface { surface, workers: workers.into_inner() })
@@ -118,9 +118,9 @@ impl Scene {
         overrides: &Overrides<'a>,
         maps: &'a Maps,
         workers: Option<&'a RefCell<Vec<SandWorker>>>,
-    ) -> Maker<'a> {
+    ) -> Loader<'a> {
         let workers = workers.filter(|_| overrides.live);
-        Maker { files: overrides.files, maps, own: overrides.own, seed: self.config().seed, workers }
+        Loader { files: overrides.files, maps, own: overrides.own, seed: self.config().seed, workers }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
-use super::made_with::Maker;
+use super::loader::Loader;
 use super::maps::{MapOf, Values};
 use crate::files::scene_file::{Brownian, Lattice as LatticeEntry, Sand, Source, ToolPicture};
 use crate::files::storage::Pixels;
@@ -28,7 +28,7 @@ type Boxed = Box<dyn HeightField>;
 /// Settings that every source of a surface shares.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a> {
-    pub maker: Maker<'a>,
+    pub maker: Loader<'a>,
     pub extent: Extent,
     pub wrap: Wrap,
     pub frame: Option<SurfaceFrame>,

@@ -1,5 +1,6 @@
 //! A body: what rings, what it is made of, and where its sound leaves.
 
+use crate::model::bus::BusId;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 
@@ -17,7 +18,7 @@ pub(crate) type Sends = [Option<(usize, f64)>; MAX_SENDS];
 /// let config = Config { audio: vec![AudioBus::default(); 2], ..Config::default() };
 /// let Engine { mut scene, .. } = config.build()?;
 /// let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
-/// let body = Body::new(ModalModel::new(vec![mode], 0.01)?).of(Material::CERAMIC).on_bus(1);
+/// let body = Body::new(ModalModel::new(vec![mode], 0.01)?).material(Material::CERAMIC).bus(BusId(1));
 /// scene.add_body(body)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -55,15 +56,15 @@ impl Body {
 
     /// Sets the material, which decides how long impacts on it last.
     #[must_use]
-    pub fn of(mut self, material: Material) -> Self {
+    pub fn material(mut self, material: Material) -> Self {
         self.material = material;
         self
     }
 
-    /// Its sound leaves on another bus: an index of [`Config::audio`](crate::Config::audio).
+    /// The bus on which its sound leaves; the first unless told otherwise.
     #[must_use]
-    pub fn on_bus(mut self, bus: usize) -> Self {
-        self.bus = bus;
+    pub fn bus(mut self, bus: BusId) -> Self {
+        self.bus = bus.0;
         self
     }
 }

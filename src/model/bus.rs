@@ -4,6 +4,10 @@
 /// Most buses of one engine.
 pub const MAX_BUSES: usize = 64;
 
+/// An audio bus: an index of [`Config::audio`](crate::Config::audio).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BusId(pub usize);
+
 /// Settings of an audio bus.
 ///
 /// ```

@@ -29,18 +29,18 @@ pub struct ContactId(pub u64);
 
 /// A haptic channel: the index of an actuator in [`Config::actuators`](crate::Config::actuators).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Actuator(pub u16);
+pub struct ChannelId(pub u16);
 
 /// Surface, probe and actuator of a contact: fixed for as long as the contact lasts.
 ///
 /// ```
-/// use asperity::{Actuator, Config, Engine, Surface, Touching, probe_by_name};
+/// use asperity::{ChannelId, Config, Engine, Surface, Touching, probe_by_name};
 ///
 /// let Engine { mut scene, .. } = Config::default().build()?;
 /// let slate = scene.add_surface(Surface::flat(0.3, 0.2)?)?;
 /// let stylus = scene.add_probe(probe_by_name("stylus").unwrap())?;
 /// // A stylus in a hand that feels it; `held_by` names the body that rings with it.
-/// let writing = Touching::on(slate).with(stylus).felt_by(Actuator(0)).importance(2.0);
+/// let writing = Touching::on(slate).probe(stylus).felt_by(ChannelId(0)).importance(2.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +51,7 @@ pub struct Touching {
     /// Probe that touches; none = the engine's own ([`Config::probe`](crate::Config::probe)).
     pub probe: Option<ProbeId>,
     /// Which haptic channel feels it; none = it is heard only.
-    pub actuator: Option<Actuator>,
+    pub actuator: Option<ChannelId>,
     /// The body that holds the probe, a pen for instance: it rings too, at its position 0, from the
     /// same impulses with opposite sign.
     pub holder: Option<BodyId>,
@@ -70,14 +70,14 @@ impl Touching {
 
     /// Felt by a haptic channel.
     #[must_use]
-    pub fn felt_by(mut self, actuator: Actuator) -> Self {
+    pub fn felt_by(mut self, actuator: ChannelId) -> Self {
         self.actuator = Some(actuator);
         self
     }
 
     /// Touching with another probe.
     #[must_use]
-    pub fn with(mut self, probe: ProbeId) -> Self {
+    pub fn probe(mut self, probe: ProbeId) -> Self {
         self.probe = Some(probe);
         self
     }
@@ -111,7 +111,7 @@ impl Touching {
 ///
 /// # let bell = BodyId::from_bits(1);
 /// // 20 g of wood with a tip of 8 mm, at 1.5 m/s.
-/// let mallet = Impact::on(bell).by(Material::WOOD, 0.02, 0.008).at_speed(1.5);
+/// let mallet = Impact::on(bell).striker(Material::WOOD, 0.02, 0.008).at_speed(1.5);
 /// // Or what a physics engine tells: 0.03 N·s at 1.5 m/s, half of the speed is left.
 /// let tumbling = Impact::from_impulse(bell, 0.03, 1.5, 0.5);
 /// ```
@@ -142,7 +142,7 @@ pub struct Impact {
     pub direction: Option<[f64; 3]>,
     /// The haptic channel that feels the blow; none = the first one if somebody holds the striker,
     /// else nobody feels it.
-    pub actuator: Option<Actuator>,
+    pub actuator: Option<ChannelId>,
     /// The body in the hand, which rings at its position 0 from the same pulse with opposite sign.
     pub holder: Option<BodyId>,
     /// Probe of the hand that feels it; none = the engine's own.
@@ -180,12 +180,12 @@ impl Emphasis {
 /// One report of the physics step.
 ///
 /// ```
-/// use asperity::{Actuator, ContactEvent, ContactId, ContactSample, SurfaceId};
+/// use asperity::{ChannelId, ContactEvent, ContactId, ContactSample, SurfaceId};
 ///
 /// # let plate = SurfaceId::from_bits(1);
 /// let finger = ContactId(1);
 /// let sample = ContactSample::new([0.2, 0.5], 0.6).sliding([0.1, 0.0]);
-/// let touch = ContactEvent::begin(finger, plate, Actuator(0), sample.landing(0.05));
+/// let touch = ContactEvent::begin(finger, plate, ChannelId(0), sample.landing(0.05));
 /// let slide = ContactEvent::moved(finger, sample);
 /// let lift = ContactEvent::end(finger);
 /// ```
@@ -221,7 +221,7 @@ pub enum ContactEvent {
 impl ContactEvent {
     /// A contact lands.
     #[must_use]
-    pub fn begin(contact: ContactId, surface: SurfaceId, actuator: Actuator, sample: ContactSample) -> Self {
+    pub fn begin(contact: ContactId, surface: SurfaceId, actuator: ChannelId, sample: ContactSample) -> Self {
         Self::begin_with(contact, Touching::on(surface).felt_by(actuator), sample)
     }
 
@@ -323,8 +323,8 @@ impl Impact {
 
     /// By a striker of this material, effective mass (kg) and radius where it strikes (m).
     #[must_use]
-    pub fn by(mut self, striker: Material, mass_kg: f64, radius_m: f64) -> Self {
-        (self.striker, self.mass_kg, self.radius_m) = (striker, mass_kg, radius_m);
+    pub fn striker(mut self, material: Material, mass_kg: f64, radius_m: f64) -> Self {
+        (self.striker, self.mass_kg, self.radius_m) = (material, mass_kg, radius_m);
         self
     }
 
@@ -344,14 +344,14 @@ impl Impact {
 
     /// At a place of the body, m in its frame.
     #[must_use]
-    pub fn at(mut self, at_m: [f64; 3]) -> Self {
+    pub fn at_m(mut self, at_m: [f64; 3]) -> Self {
         self.at_m = Some(at_m);
         self
     }
 
     /// Felt by a haptic channel.
     #[must_use]
-    pub fn felt_by(mut self, actuator: Actuator) -> Self {
+    pub fn felt_by(mut self, actuator: ChannelId) -> Self {
         self.actuator = Some(actuator);
         self
     }

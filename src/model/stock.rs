@@ -228,7 +228,7 @@ impl Body {
     /// As [`Stock::modes`].
     pub fn stock(shape: Stock, material: Material, size_m: f64) -> Result<Self, BadValue> {
         let modes = shape.modes(&material, size_m)?;
-        Ok(Self::new(modes).of(material).mass_kg(shape.mass_kg(&material, size_m)))
+        Ok(Self::new(modes).material(material).mass_kg(shape.mass_kg(&material, size_m)))
     }
 }
 

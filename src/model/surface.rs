@@ -174,7 +174,7 @@ impl Surface {
     /// ```
     /// use asperity::{Material, Surface};
     ///
-    /// let desk = Surface::flat(1.2, 0.6)?.of(Material::WOOD);
+    /// let desk = Surface::flat(1.2, 0.6)?.material(Material::WOOD);
     /// # Ok::<(), asperity::SurfaceError>(())
     /// ```
     ///
@@ -196,9 +196,9 @@ impl Surface {
 
     /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its
     /// friction. What is said after this counts instead:
-    /// `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
+    /// `.material(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
     #[must_use]
-    pub fn of(mut self, material: Material) -> Self {
+    pub fn material(mut self, material: Material) -> Self {
         self.roughness = Roughness::Constant(material.roughness);
         self.micro_relief_m = material.micro_relief_m;
         self.friction = Some(material.mu_kinetic);
@@ -207,7 +207,7 @@ impl Surface {
 
     /// Rings this body when it is touched.
     #[must_use]
-    pub fn on(mut self, body: BodyId) -> Self {
+    pub fn body(mut self, body: BodyId) -> Self {
         self.body = Some(body);
         self
     }
@@ -285,12 +285,12 @@ impl Surface {
     }
 
     /// The force at which it carries a tip, N; none where it is hard. See [`TouchKind::Stands`].
-    pub(crate) fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+    pub(crate) fn support_force_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
         if self.compliance_m_n > 0.0 {
             return Some(depth_m.max(0.0) / self.compliance_m_n);
         }
         let kind = TouchKind::Stands { depth_m };
-        self.source.touch(&Touch { kind, position_m, ..Touch::default() }).carries_n
+        self.source.touch(&Touch { kind, position_m, ..Touch::default() }).support_force_n
     }
 
     /// Sets what sliding sends to the body.
@@ -312,7 +312,7 @@ impl Surface {
     /// let Engine { mut scene, .. } = Config::default().build()?;
     /// let glass = scene.add_body(Body::stock(Stock::Bowl, Material::GLASS, 0.08)?)?;
     /// let wet = Friction { mu_static: 0.9, mu_kinetic: 0.4, slip_speed_m_s: 0.05 };
-    /// scene.add_surface(Surface::flat(0.25, 0.01)?.on(glass).stick_slip(wet))?;
+    /// scene.add_surface(Surface::flat(0.25, 0.01)?.body(glass).stick_slip(wet))?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

@@ -3,7 +3,7 @@
 use crate::model::event::ContactSample;
 use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_surface::answer::{AnswerAt, capped};
+use asperity_surface::force_output::{ForceAt, capped};
 use asperity_surface::height_field::SurfaceBlock;
 
 /// Below this speed friction no longer jumps, m/s.
@@ -25,7 +25,7 @@ pub(crate) struct TipForce {
 pub(crate) struct Ground {
     gradient: [f64; 2],
     friction: f64,
-    pub(crate) answer: AnswerAt,
+    pub(crate) answer: ForceAt,
 }
 
 impl Ground {
@@ -36,7 +36,7 @@ impl Ground {
 
 impl Default for Ground {
     fn default() -> Self {
-        Self { gradient: [0.0; 2], friction: 0.0, answer: AnswerAt::NONE }
+        Self { gradient: [0.0; 2], friction: 0.0, answer: ForceAt::NONE }
     }
 }
 
@@ -60,7 +60,7 @@ impl TipForce {
         if self.falls || self.carried_n == Some(0.0) {
             return [0.0; 3];
         }
-        let AnswerAt { force_n, push_per_n, cap_n } = ground.answer;
+        let ForceAt { force_n, push_per_n, cap_n } = ground.answer;
         let velocity = point.velocity_m_s;
         // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
         let slide = ground.friction / libm::hypot(velocity[0], velocity[1]).max(STICK_M_S);

@@ -12,7 +12,7 @@ use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
 use crate::model::contact_sample::ContactSample;
 use crate::model::error::AddError;
-use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
+use crate::model::event::{ChannelId, ContactEvent, ContactId, Impact, Touching};
 use crate::model::id::BodyId;
 use crate::model::level_policy::LevelPolicy;
 use crate::model::levels::{BURST, FROM, PAUSE_S, SETTLED_S, STRIKE, Strike};
@@ -137,7 +137,7 @@ impl Bench {
             ContactSample::new(uv, motion.force_n).sliding(velocity_m_s)
         };
         let contact = ContactId(0);
-        let touching = touching.felt_by(Actuator(channel as u16));
+        let touching = touching.felt_by(ChannelId(channel as u16));
         let (mut power, mut frames) = (Power::default(), 0);
         for step in 0..(motion.length_s * STEPS_HZ) as u32 {
             let t = f64::from(step) / STEPS_HZ;

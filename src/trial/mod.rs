@@ -30,7 +30,7 @@ fn of_body(config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
     let id = bench.scene.add_body(alone(body))?;
     let surface = bench.scene.add_surface(plain_ground()?)?;
     let rigid = bench.scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
-    let drawn = Touching::on(surface).with(rigid).held_by(id);
+    let drawn = Touching::on(surface).probe(rigid).held_by(id);
     let drawn = bench.stroke(drawn, 0, [1.0; 2], &along(WAYS[1])).heard.sqrt();
     let [struck, burst] = bench.strikes(id);
     Ok(BodyTrial { drawn, struck, burst })
@@ -113,7 +113,9 @@ fn alone(body: &Body) -> Body {
 
 /// A plane of stone.
 fn plain_ground() -> Result<Surface, AddError> {
-    Surface::flat(1.0, 1.0).map(|plane| plane.of(Material::STONE)).map_err(|_| AddError::Unknown("plane"))
+    Surface::flat(1.0, 1.0)
+        .map(|plane| plane.material(Material::STONE))
+        .map_err(|_| AddError::Unknown("plane"))
 }
 
 /// Content of a surface as far as reference strokes meet it, hashed.

@@ -5,7 +5,6 @@
 //! normal maps are the crate `asperity-pictures`.
 
 // Real time.
-pub mod answer;
 mod block;
 #[cfg(feature = "brownian")]
 pub mod brownian;
@@ -14,6 +13,7 @@ pub mod combine;
 pub mod exclusive;
 pub mod fade;
 pub mod footprint;
+pub mod force_output;
 pub mod force_rendering;
 pub mod height_field;
 pub mod height_map;

@@ -265,7 +265,7 @@ impl HeightField for SolidNoise {
             }
         }
         if path.slopes {
-            out.push_no_slope(n);
+            out.clear_gradient_force(n);
         }
     }
 

@@ -65,9 +65,9 @@ fn play(
 }
 
 /// The force that carries a tip at a depth, N.
-fn carries_n(sand: &mut SandSource, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+fn support_force_n(sand: &mut SandSource, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
     let kind = TouchKind::Stands { depth_m };
-    sand.touch(&Touch { kind, position_m, ..Touch::default() }).carries_n
+    sand.touch(&Touch { kind, position_m, ..Touch::default() }).support_force_n
 }
 
 #[test]
@@ -309,13 +309,13 @@ fn a_tip_is_carried_by_the_law_at_its_depth_below_the_sand_as_it_lies() {
         let bed = SandDesign { law, ..design() };
         let mut sand = SandSource::synchronous(&bed, 1).unwrap();
         for depth_m in [-0.01, 0.0, 0.001, 0.003, 0.008] {
-            let n = carries_n(&mut sand, [0.05, 0.05], depth_m).unwrap();
+            let n = support_force_n(&mut sand, [0.05, 0.05], depth_m).unwrap();
             assert!((n - law.force_n(depth_m)).abs() <= 0.01 * law.force_n(depth_m), "{depth_m}: {n}");
         }
         // Where the bed is 2 mm lower there is 2 mm less of it to stand in.
         sand.shape(|_, _| bed.depth_m - 0.002);
-        assert_eq!(carries_n(&mut sand, [0.05, 0.05], 0.002), Some(0.0));
-        let n = carries_n(&mut sand, [0.05, 0.05], 0.005).unwrap();
+        assert_eq!(support_force_n(&mut sand, [0.05, 0.05], 0.002), Some(0.0));
+        let n = support_force_n(&mut sand, [0.05, 0.05], 0.005).unwrap();
         assert!((n / law.force_n(0.003) - 1.0).abs() < 1e-4, "{n}");
     }
 }
@@ -378,7 +378,8 @@ fn a_contact_lands_on_the_sand_as_it_lies_whether_that_is_simulated_here_or_else
             sand.sample(&path, &mut out);
             out.height_m[0]
         });
-        let carried = [&mut here, &mut elsewhere].map(|sand| carries_n(sand, [u, 0.05], 0.003).unwrap());
+        let carried =
+            [&mut here, &mut elsewhere].map(|sand| support_force_n(sand, [u, 0.05], 0.003).unwrap());
         println!("u = {u}: {a:.6} m here, {b:.6} m elsewhere; {carried:.3?} N");
         assert!((a - b).abs() < 5e-5, "{a} {b}");
         assert!((carried[0] - carried[1]).abs() < 0.03 * carried[0], "{carried:?}");

@@ -3,7 +3,7 @@
 
 use super::common::{self, grating};
 use asperity::{
-    Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
+    Body, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
     Renderer, Scene, SurfaceId,
 };
 
@@ -34,8 +34,8 @@ impl Strokes {
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let surfaces = (0..bodies)
             .map(|_| {
-                let body = scene.add_body(Body::new(modes(modes_each)).of(Material::CERAMIC)).unwrap();
-                scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap()
+                let body = scene.add_body(Body::new(modes(modes_each)).material(Material::CERAMIC)).unwrap();
+                scene.add_surface(grating(2e-3, 2e-5).body(body)).unwrap()
             })
             .collect();
         Self { scene, renderer, surfaces, reports: 0 }
@@ -52,10 +52,10 @@ impl Strokes {
                 let sample = ContactSample::new([0.1 + (speed_m_s * t / common::SIDE_M) % 0.8, 0.5], 0.6)
                     .sliding([speed_m_s, 0.0]);
                 let event = match self.reports {
-                    0 => ContactEvent::begin(id, *surface, Actuator(0), sample),
+                    0 => ContactEvent::begin(id, *surface, ChannelId(0), sample),
                     // Some lift for a while, and what they struck rings out.
                     n if n % 40 == 20 + i as u32 % 3 && i % 2 == 0 => ContactEvent::end(id),
-                    n if n % 40 == 30 => ContactEvent::begin(id, *surface, Actuator(0), sample),
+                    n if n % 40 == 30 => ContactEvent::begin(id, *surface, ChannelId(0), sample),
                     _ => ContactEvent::moved(id, sample),
                 };
                 // Moves of those that have lifted are nobody's.

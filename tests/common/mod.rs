@@ -113,7 +113,7 @@ pub fn render_tapped<T: Tap>(
 ) -> Render {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
-    let surface = scene.add_surface(surface.on(body).excitation(Excitation::BOTH)).unwrap();
+    let surface = scene.add_surface(surface.body(body).excitation(Excitation::BOTH)).unwrap();
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),

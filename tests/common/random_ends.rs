@@ -13,7 +13,7 @@
 
 use asperity::limits;
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Excitation,
+    ActuatorSettings, ChannelId, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Excitation,
     Extent, Integrator, PathMode, Probe, Surface, Tap, Wrap,
 };
 use asperity_dsp::rng::Rng;
@@ -221,7 +221,7 @@ pub fn outcome(seed: u64) -> Outcome {
             ..ContactSample::default()
         };
         let event = if step == 0 {
-            ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(1), sample)
         };

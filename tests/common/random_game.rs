@@ -5,8 +5,8 @@
 use crate::common::{bar, grating, plate};
 use asperity::live::ports::{Feed, Force, ForcePort, Pcm, PcmPort};
 use asperity::{
-    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Excitation, Impact,
-    Material, ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
+    AudioBus, BodyId, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Excitation,
+    Impact, Material, ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 
@@ -43,8 +43,8 @@ impl RandomGame {
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let bodies = [scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
         let surfaces = [
-            scene.add_surface(grating(1e-3, 5e-5).on(bodies[0])).unwrap(),
-            scene.add_surface(plate(1.0).on(bodies[1])).unwrap(),
+            scene.add_surface(grating(1e-3, 5e-5).body(bodies[0])).unwrap(),
+            scene.add_surface(plate(1.0).body(bodies[1])).unwrap(),
             scene.add_surface(plate(0.0)).unwrap(),
         ];
         let probes = ["stylus", "rigid"].map(|name| scene.add_probe(probe_by_name(name).unwrap()).unwrap());
@@ -110,9 +110,9 @@ impl RandomGame {
     fn touching(&self, contact: ContactId, surface: SurfaceId) -> Touching {
         let here = Touching::on(surface);
         match contact.0 % 3 {
-            0 => here.felt_by(Actuator(0)),
-            1 => here.felt_by(Actuator(0)).with(self.probes[0]).held_by(self.bodies[1]).gain(0.8),
-            _ => here.with(self.probes[1]),
+            0 => here.felt_by(ChannelId(0)),
+            1 => here.felt_by(ChannelId(0)).probe(self.probes[0]).held_by(self.bodies[1]).gain(0.8),
+            _ => here.probe(self.probes[1]),
         }
     }
 
@@ -121,23 +121,24 @@ impl RandomGame {
         let body = self.bodies[which % 2];
         match self.rng.next_u32() % 50 {
             0 => {
-                let surface = plate(0.5).on(body).excitation(Excitation::BOTH);
+                let surface = plate(0.5).body(body).excitation(Excitation::BOTH);
                 let _ = self.scene.replace_surface(self.surfaces[which], surface);
             }
             1 => {
                 let removed = self.scene.remove_surface(self.surfaces[which]).is_ok();
-                if removed && let Ok(id) = self.scene.add_surface(grating(2e-3, 1e-4).on(body)) {
+                if removed && let Ok(id) = self.scene.add_surface(grating(2e-3, 1e-4).body(body)) {
                     self.surfaces[which] = id;
                 }
             }
             2 => {
-                let _ =
-                    self.scene.replace_body(body, asperity::Body::new(clicking_bar()).of(Material::GLASS));
+                let _ = self
+                    .scene
+                    .replace_body(body, asperity::Body::new(clicking_bar()).material(Material::GLASS));
             }
             3 => {
                 let gain = self.rng.uniform();
-                let _ = self.scene.set_haptic_gain(Actuator(0), gain);
-                let _ = self.scene.set_body_bus(body, usize::from(gain > 0.5));
+                let _ = self.scene.set_haptic_gain(ChannelId(0), gain);
+                let _ = self.scene.set_body_bus(body, BusId(usize::from(gain > 0.5)));
                 // No source here takes it; its box goes home all the same.
                 let _ = self.scene.change_surface(self.surfaces[which], gain);
             }
@@ -148,7 +149,7 @@ impl RandomGame {
                 }
             }
             5 => {
-                let pcm = Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.01 };
+                let pcm = Pcm { from: Feed::Haptic(ChannelId(0)), holds_s: 0.01 };
                 self.ports = (self.scene.open_port(pcm).ok(), None);
             }
             7 => {

@@ -4,7 +4,7 @@
 use crate::common::{SIDE_M, grating, peak};
 use crate::steps::largest_step;
 use asperity::{
-    Actuator, ActuatorSettings, BodyId, Config, ContactEvent, ContactId, ContactSample, ModalModel, Mode,
+    ActuatorSettings, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, ModalModel, Mode,
     Renderer, Scene, Surface, SurfaceId,
 };
 
@@ -39,10 +39,10 @@ impl Stroke {
         let asperity::Engine { mut scene, renderer, .. } =
             Config { actuators, ..Config::default() }.build().unwrap();
         let body = scene.add_body(low_body()).unwrap();
-        let surface = scene.add_surface(surface.on(body)).unwrap();
+        let surface = scene.add_surface(surface.body(body)).unwrap();
         let mut stroke =
             Self { scene, renderer, surface, body, reported: 0, haptic: Vec::new(), audio: Vec::new() };
-        let event = ContactEvent::begin(ContactId(1), surface, Actuator(0), sample_at(0.0));
+        let event = ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample_at(0.0));
         stroke.scene.report(0.0, event).unwrap();
         stroke
     }

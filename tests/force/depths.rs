@@ -6,8 +6,8 @@ use asperity::live::ports::{Force, ForceRow};
 use asperity::surface::raster::Raster;
 use asperity::surface::sand::SandLaw;
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Refusal, Surface, SurfaceFrame,
-    TipLaw, Wrap,
+    ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, Refusal, Surface,
+    SurfaceFrame, TipLaw, Wrap,
 };
 
 #[test]
@@ -195,7 +195,7 @@ fn twenty_loops_that_nobody_prepared_get_finite_forces_within_the_cap_and_end_wi
             let event = if begun {
                 ContactEvent::moved(ContactId(1), sample)
             } else {
-                ContactEvent::begin(ContactId(1), id, Actuator(0), sample)
+                ContactEvent::begin(ContactId(1), id, ChannelId(0), sample)
             };
             let taken = scene.report(t, event).is_ok();
             assert_eq!(
@@ -254,7 +254,7 @@ fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
     }
     let Engine { mut scene, .. } = Config::default().build().unwrap();
     let hard = scene.add_surface(cloth()).unwrap();
-    let event = |sample| ContactEvent::begin(ContactId(1), hard, Actuator(0), sample);
+    let event = |sample| ContactEvent::begin(ContactId(1), hard, ChannelId(0), sample);
     let refused = scene.report(0.0, event(ContactSample::at_depth([0.5; 2], 0.001))).unwrap_err();
     assert_eq!(refused.reason, Refusal::Hard);
     assert!(refused.to_string().starts_with("depth_m: the surface is hard"), "{refused}");

@@ -3,7 +3,7 @@
 use super::stroke::{Felt, SIDE_M, block_of};
 use asperity::live::ports::{Force, ForceRow, Of};
 use asperity::surface::solid_materials::SolidMaterial;
-use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceId};
+use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceId};
 
 #[test]
 fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold_up_nothing() {
@@ -18,7 +18,7 @@ fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold
         let t = f64::from(step) / 60.0;
         let sample = ContactSample::new([(0.02 + 0.07 * t) / SIDE_M, 0.5], 0.5).sliding([0.07, 0.0]);
         let event = if step == 0 {
-            ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(1), sample)
         };
@@ -49,7 +49,7 @@ fn a_contact_that_lifts_and_lands_elsewhere_at_once_is_felt_where_it_is_and_not_
     let surface: SurfaceId = scene.add_surface(plate).unwrap();
     let mut felt = Felt::new(1000.0, 44_100.0);
     let landing = |u, force_n| {
-        ContactEvent::begin(ContactId(1), surface, Actuator(0), ContactSample::new([u, 0.5], force_n))
+        ContactEvent::begin(ContactId(1), surface, ChannelId(0), ContactSample::new([u, 0.5], force_n))
     };
     let stays = |u, force_n| {
         ContactEvent::moved(ContactId(1), ContactSample::new([u, 0.5], force_n).sliding([0.0; 2]))
@@ -68,7 +68,7 @@ fn a_contact_that_lifts_and_lands_elsewhere_at_once_is_felt_where_it_is_and_not_
     let Felt { rows, told, .. } = &mut felt;
     rows.close(u64::MAX, |row| told.push(row));
     let normal_n = |row: &ForceRow| row.force_n[2];
-    for of in [Of::Contact(ContactId(1)), Of::Hand(Actuator(0))] {
+    for of in [Of::Contact(ContactId(1)), Of::Hand(ChannelId(0))] {
         let at = |tick: u64| {
             let mut rows = told.iter().filter(|row| row.of == of && row.tick == tick);
             let row = rows.next().map(normal_n).unwrap();

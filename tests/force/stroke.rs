@@ -5,7 +5,7 @@ use asperity::surface::sand::{SandDesign, SandLaw, SandSource};
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity::surface::solid_noise::SolidNoise;
 use asperity::{
-    Actuator, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Surface, Tap,
+    ChannelId, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Surface, Tap,
 };
 
 pub const SIDE_M: f64 = 0.2;
@@ -54,7 +54,7 @@ impl Stroke {
         for step in 0..(self.seconds * self.reports_hz) as u32 {
             let t = f64::from(step) / self.reports_hz;
             let event = if step == 0 {
-                ContactEvent::begin(ContactId(1), id, Actuator(0), sample(t))
+                ContactEvent::begin(ContactId(1), id, ChannelId(0), sample(t))
             } else {
                 ContactEvent::moved(ContactId(1), sample(t))
             };

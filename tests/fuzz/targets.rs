@@ -24,7 +24,7 @@ fn render(model: ModalModel, log: &ContactLog) {
     let asperity::Engine { mut scene, renderer, .. } =
         Config::default().build().expect("the default config is accepted");
     let Ok(body) = scene.add_body(model) else { return };
-    let surface = scene.add_surface(flat().on(body)).expect("a surface that is accepted");
+    let surface = scene.add_surface(flat().body(body)).expect("a surface that is accepted");
     let names = Names {
         surfaces: HashMap::from([("tiles".to_owned(), surface)]),
         bodies: HashMap::from([("tile".to_owned(), body)]),

@@ -12,7 +12,7 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::{Actuator, ContactEvent, UvPlace, probe_by_name};
+use asperity::{ChannelId, ContactEvent, UvPlace, probe_by_name};
 use asperity_pairs::{
     Motion, Notice, ODD_GRAVITY_M_S2, Pair, Side, Solved, Step, Thing, Vec3, axis_radius_m, mobility_per_kg,
 };
@@ -276,7 +276,7 @@ fn thing_of(entity: Entity, is: &TouchThing, touch: &Touch) -> Thing {
         body: touch.body(entity),
         // A plane without area has no texture coordinates: the thing is then struck only.
         surface: touch.surface(entity).filter(|_| is.surface_mapping().is_some()),
-        actuator: is.actuator.map(Actuator),
+        actuator: is.actuator.map(ChannelId),
         probe: None,
     }
 }

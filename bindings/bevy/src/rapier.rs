@@ -8,7 +8,7 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::Actuator;
+use asperity::ChannelId;
 use asperity_rapier::{Adapter, Mapping, Thing, View};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -130,7 +130,7 @@ fn thing_of(entity: Entity, thing: &TouchThing, touch: &Touch) -> Thing {
     }
     is = is.running(thing.belt_m_s).pressing(thing.nominal_force_n);
     if let Some(actuator) = thing.actuator {
-        is = is.felt_by(Actuator(actuator));
+        is = is.felt_by(ChannelId(actuator));
     }
     thing.radius_m.map_or(is.clone(), |radius_m| is.radius_m(radius_m))
 }

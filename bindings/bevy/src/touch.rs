@@ -5,7 +5,7 @@ use crate::component::{TouchProbe, TouchSurface};
 use crate::event::{TouchError, TouchEvent};
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::{
-    Actuator, Body, BodyId, ContactEvent, ContactId, Impact, ProbeId, Scene, Stats, SurfaceId, Touching,
+    ChannelId, Body, BodyId, ContactEvent, ContactId, Impact, ProbeId, Scene, Stats, SurfaceId, Touching,
 };
 use bevy_ecs::prelude::*;
 use std::collections::HashMap;
@@ -211,7 +211,7 @@ impl Touch {
                 self.next_contact += 1;
                 let mut touching = Touching::on(id);
                 touching.probe = self.probes.get(&toucher).copied();
-                touching.actuator = probe.map_or(Some(Actuator(0)), |probe| probe.actuator.map(Actuator));
+                touching.actuator = probe.map_or(Some(ChannelId(0)), |probe| probe.actuator.map(ChannelId));
                 if self.report_of(toucher, time_s, ContactEvent::begin_with(contact.id, touching, sample)) {
                     self.contacts.insert(toucher, contact);
                 }

@@ -222,7 +222,7 @@ fn a_blow_that_a_finger_feels_stays_within_full_scale() {
     let mut app = app();
     let [_, body] = finger_and_plate(&mut app);
     let of_a_hammer = Impact { mass_kg: 0.02, ..Impact::on(asperity::BodyId::from_bits(0)) };
-    let impact = Impact { speed_m_s: 1.0, actuator: Some(asperity::Actuator(0)), ..of_a_hammer };
+    let impact = Impact { speed_m_s: 1.0, actuator: Some(asperity::ChannelId(0)), ..of_a_hammer };
     tell(&mut app, TouchEvent::Impact { body, impact });
     for _ in 0..30 {
         app.update();

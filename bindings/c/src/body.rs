@@ -8,7 +8,7 @@ use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_REFUSED, Failure};
 use crate::text;
 use asperity::load::Overrides;
-use asperity::{AddError, Body, BodyId, ModalModel, Mode};
+use asperity::{AddError, Body, BodyId, BusId, ModalModel, Mode};
 use std::ffi::c_char;
 use std::mem::offset_of;
 use std::path::Path;
@@ -139,7 +139,7 @@ impl asp_body {
         let overrides = Overrides { files: &given, live: half.live, ..Overrides::default() };
         let body = half.scene.read_body(&written(&table)?, Path::new(""), &overrides);
         let body = body.map_err(|error| Failure::new(ASP_REFUSED, error))?;
-        let body = body.on_bus(self.bus as usize).gain(self.gain);
+        let body = body.bus(BusId(self.bus as usize)).gain(self.gain);
         Ok(if self.strike_gain.is_nan() { body } else { body.strike_gain(self.strike_gain) })
     }
 
@@ -226,7 +226,7 @@ pub unsafe extern "C" fn asp_remove_body(scene: *mut asp_scene, id: u64) -> i32 
 pub unsafe extern "C" fn asp_set_body_bus(scene: *mut asp_scene, id: u64, bus: u32) -> i32 {
     enter(|| {
         let mut half = SCENES.hold(scene as usize)?;
-        half.scene.set_body_bus(BodyId::from_bits(id), bus as usize).map_err(|error| refused(&error))
+        half.scene.set_body_bus(BodyId::from_bits(id), BusId(bus as usize)).map_err(|error| refused(&error))
     })
 }
 
@@ -236,7 +236,9 @@ pub unsafe extern "C" fn asp_set_body_bus(scene: *mut asp_scene, id: u64, bus: u
 pub unsafe extern "C" fn asp_set_body_send(scene: *mut asp_scene, id: u64, bus: u32, gain: f64) -> i32 {
     enter(|| {
         let mut half = SCENES.hold(scene as usize)?;
-        half.scene.set_body_send(BodyId::from_bits(id), bus as usize, gain).map_err(|error| refused(&error))
+        half.scene
+            .set_body_send(BodyId::from_bits(id), BusId(bus as usize), gain)
+            .map_err(|error| refused(&error))
     })
 }
 

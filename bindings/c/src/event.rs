@@ -6,8 +6,8 @@ use crate::material::{self, ASP_MATERIAL_CUSTOM, ASP_MATERIAL_DEFAULT};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use asperity::{
-    Actuator, BodyId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, ProbeId, SurfaceId,
-    Touching,
+    BodyId, ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, ProbeId,
+    SurfaceId, Touching,
 };
 use std::mem::offset_of;
 
@@ -206,10 +206,10 @@ impl asp_event {
         Ok(material::material(self.striker)?.unwrap_or(Material::STEEL))
     }
 
-    fn actuator(&self) -> Result<Option<Actuator>, Failure> {
+    fn actuator(&self) -> Result<Option<ChannelId>, Failure> {
         match self.actuator {
             -1 => Ok(None),
-            channel => u16::try_from(channel).map(|channel| Some(Actuator(channel))).map_err(|_| {
+            channel => u16::try_from(channel).map(|channel| Some(ChannelId(channel))).map_err(|_| {
                 let right = "must be a haptic channel from 0, or -1 for nobody";
                 Failure::new(ASP_BAD_ARGUMENT, format!("actuator: {channel} is refused; {right}"))
             }),
@@ -246,7 +246,7 @@ impl asp_event {
         own
     }
 
-    fn hand(&mut self, actuator: Option<Actuator>, holder: Option<BodyId>, probe: Option<ProbeId>) {
+    fn hand(&mut self, actuator: Option<ChannelId>, holder: Option<BodyId>, probe: Option<ProbeId>) {
         self.actuator = actuator.map_or(-1, |actuator| i32::from(actuator.0));
         self.holder = holder.map_or(0, BodyId::to_bits);
         self.probe = probe.map_or(0, ProbeId::to_bits);

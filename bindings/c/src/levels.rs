@@ -4,7 +4,7 @@ use crate::body::refused;
 use crate::entry::{enter, out};
 use crate::handles::{SCENES, asp_scene};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_UNKNOWN, Failure};
-use asperity::{Actuator, AddError, BodyId, Scene};
+use asperity::{AddError, BodyId, BusId, ChannelId, Scene};
 
 /// Metres, or metres a second squared, at sample value 1.0 of a haptic channel; of: the channel.
 pub const ASP_LEVEL_FULL_SCALE: u32 = 1;
@@ -26,14 +26,14 @@ pub unsafe extern "C" fn asp_set_haptic_gain(scene: *mut asp_scene, channel: u32
             Failure::new(ASP_UNKNOWN, format!("{what}; must be below the number of haptic channels"))
         })?;
         let mut half = SCENES.hold(scene as usize)?;
-        half.scene.set_haptic_gain(Actuator(channel), gain).map_err(|error| refused(&error))
+        half.scene.set_haptic_gain(ChannelId(channel), gain).map_err(|error| refused(&error))
     })
 }
 
 /// The gain of an audio bus, 0 to 1e6.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_bus_gain(scene: *mut asp_scene, bus: u32, gain: f64) -> i32 {
-    set(scene, |scene| scene.set_audio_gain(bus as usize, gain))
+    set(scene, |scene| scene.set_audio_gain(BusId(bus as usize), gain))
 }
 
 /// All that is felt and heard fades within 20 ms (not 0), or comes back (0); everything goes on

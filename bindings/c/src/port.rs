@@ -7,7 +7,7 @@ use crate::render::guarded;
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use asperity::live::ports::{Feed, Force, Levels, Of, Pcm, PointSettings, Points, Tone};
-use asperity::{Actuator, ContactId};
+use asperity::{ChannelId, ContactId};
 
 /// Samples, exactly as they leave: read with `asp_port_pcm`.
 pub const ASP_PORT_PCM: u32 = 1;
@@ -99,7 +99,7 @@ fn refuse(what: String, right: &str) -> Failure {
 impl asp_port_config {
     fn feed(&self) -> Result<Feed, Failure> {
         let channel = || {
-            u16::try_from(self.index).map(Actuator).map_err(|_| {
+            u16::try_from(self.index).map(ChannelId).map_err(|_| {
                 refuse(format!("index: {} is refused", self.index), "must be a haptic channel from 0")
             })
         };
@@ -231,7 +231,7 @@ pub unsafe extern "C" fn asp_port_forces(port: *mut asp_port, forces: *mut asp_f
             let row = port.read()?;
             let (of, is_hand) = match row.of {
                 Of::Contact(ContactId(name)) => (name, 0),
-                Of::Hand(Actuator(channel)) => (u64::from(channel), 1),
+                Of::Hand(ChannelId(channel)) => (u64::from(channel), 1),
             };
             Some(asp_force { tick: row.tick, of, is_hand, force_n: row.force_n })
         })

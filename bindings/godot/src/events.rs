@@ -1,6 +1,6 @@
 //! Events: numbers of a script as events of the engine.
 
-use asperity::{Actuator, BodyId, ContactSample, Impact, Material, SurfaceId, Touching};
+use asperity::{ChannelId, BodyId, ContactSample, Impact, Material, SurfaceId, Touching};
 use godot::prelude::*;
 
 /// What a script calls a contact, as the engine's number.
@@ -11,10 +11,10 @@ pub(crate) fn contact(number: i64) -> Result<asperity::ContactId, String> {
 }
 
 /// A haptic channel; below 0: none.
-pub(crate) fn channel(number: i64) -> Result<Option<Actuator>, String> {
+pub(crate) fn channel(number: i64) -> Result<Option<ChannelId>, String> {
     match number {
         ..0 => Ok(None),
-        0..=65_535 => Ok(Some(Actuator(number as u16))),
+        0..=65_535 => Ok(Some(ChannelId(number as u16))),
         _ => Err(format!("channel: {number} is refused; must be a haptic channel from 0, or -1")),
     }
 }

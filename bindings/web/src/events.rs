@@ -2,7 +2,7 @@
 
 use crate::exchange::done;
 use crate::session::{self, Session};
-use asperity::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, Touching};
+use asperity::{ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, Touching};
 use std::cell::RefCell;
 
 /// Numbers of a row.
@@ -114,10 +114,10 @@ impl Row {
         Err(format!("contact: {contact} is refused; must be a whole number from 0"))
     }
 
-    fn actuator(&self) -> Result<Option<Actuator>, String> {
+    fn actuator(&self) -> Result<Option<ChannelId>, String> {
         self.told(ACTUATOR)
             .map(|channel| match channel {
-                0.0..=65_535.0 => Ok(Actuator(channel as u16)),
+                0.0..=65_535.0 => Ok(ChannelId(channel as u16)),
                 _ => Err(format!("actuator: {channel} is refused; must be a haptic channel from 0")),
             })
             .transpose()

@@ -2,7 +2,7 @@
 
 use crate::exchange::{answer, done};
 use crate::session;
-use asperity::Actuator;
+use asperity::ChannelId;
 use asperity::live::ports::{Feed, Levels, Picture};
 
 /// How much of what a port tells waits for a page that is late, s.
@@ -14,7 +14,7 @@ pub extern "C" fn asp_open_levels(channel: u32, rate_hz: f64) -> u32 {
     done(session::with(|session| {
         let channel = u16::try_from(channel).map_err(|_| format!("channel: {channel} is none"))?;
         session.ports.levels = None;
-        let levels = Levels { from: Feed::Haptic(Actuator(channel)), rate_hz, holds_s: HOLDS_S };
+        let levels = Levels { from: Feed::Haptic(ChannelId(channel)), rate_hz, holds_s: HOLDS_S };
         session.ports.levels = Some(session.scene.open_port(levels).map_err(|error| error.to_string())?);
         Ok(())
     }))

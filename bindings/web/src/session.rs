@@ -6,7 +6,7 @@ use asperity::files::FileError;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::load::{self, Overrides};
-use asperity::{Actuator, BodyId, ClockMode, Engine, Isa, Material, ProbeId, Renderer, Scene, SurfaceId};
+use asperity::{BusId, ChannelId, BodyId, ClockMode, Engine, Isa, Material, ProbeId, Renderer, Scene, SurfaceId};
 use serde_json::json;
 use std::cell::RefCell;
 use std::path::Path;
@@ -157,10 +157,10 @@ pub extern "C" fn asp_do(what: u32, index: u32, value: f64) -> u32 {
             RESUME => scene.resume(),
             FADE_ALL => scene.fade_all(),
             RESET => scene.reset(),
-            AUDIO_GAIN => scene.set_audio_gain(index as usize, value),
+            AUDIO_GAIN => scene.set_audio_gain(BusId(index as usize), value),
             HAPTIC_GAIN => {
                 let channel = u16::try_from(index).map_err(|_| format!("channel: {index} is none"))?;
-                scene.set_haptic_gain(Actuator(channel), value)
+                scene.set_haptic_gain(ChannelId(channel), value)
             }
             TIME_SCALE => scene.set_time_scale(value),
             other => return Err(format!("what: {other} is refused; must be 0 to {TIME_SCALE}")),

@@ -89,10 +89,10 @@ fn strikes(level: usize) -> Result<Vec<Vec<f64>>, CliError> {
 fn strike(level: usize, phases: u64) -> Result<Vec<f64>, CliError> {
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
     let asperity::Engine { mut scene, mut renderer, .. } = config.build().map_err(refused)?;
-    let body = asperity::Body::new(body(phases)).of(Material::CERAMIC);
+    let body = asperity::Body::new(body(phases)).material(Material::CERAMIC);
     let body = scene.add_body(body).map_err(refused)?;
     bench_scene::be_late(&mut renderer, level);
-    let impact = Impact::from_impulse(body, 1e-3, 2.0, 1.0).by(Material::STEEL, 2.5e-4, 1e-3);
+    let impact = Impact::from_impulse(body, 1e-3, 2.0, 1.0).striker(Material::STEEL, 2.5e-4, 1e-3);
     scene.report(0.0, ContactEvent::Impact(impact)).map_err(refused)?;
     let mut audio = vec![0.0; BLOCK * BLOCKS];
     let mut haptic = audio.clone();

@@ -8,7 +8,7 @@ use crate::output::{self, Outputs};
 use asperity_dsp::DesignError;
 use asperity_pictures::borders::Borders;
 use asperity_pictures::from_photo::TEXEL_M;
-use asperity_pictures::metamer::{self as core, Feel, Metamer, MetamerOptions, Method};
+use asperity_pictures::metamer::{self as core, Metamer, MetamerOptions, Method, Statistics};
 use asperity_pictures::pyramid::{Kind, Subband};
 use asperity_surface::image_io;
 use asperity_surface::raster::Raster;
@@ -19,7 +19,7 @@ use std::time::Instant;
 
 /// Correlation with the original below which a metamer is warned of: what it shares with its
 /// original is hardly seen.
-const LITTLE_IS_LEFT: f64 = 0.3;
+const LEAST_CORRELATION: f64 = 0.3;
 
 /// Make one height map feel like another
 #[derive(Debug, Args)]
@@ -157,7 +157,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let start = Instant::now();
     let refuse = |error| refused(at(&error, &options.original, &options.reference), &error);
     let mut feel =
-        Feel::new(&reference, original.width, original.height, &settings(options)).map_err(refuse)?;
+        Statistics::new(&reference, original.width, original.height, &settings(options)).map_err(refuse)?;
     let mut file = Levels::default();
     let stored = |image| {
         file = Levels::holding(&image);
@@ -300,7 +300,7 @@ fn warnings(options: &Options, report: &Report) -> Vec<String> {
             100.0 * report.borrowed
         ));
     }
-    if is_iterated && report.correlation_with_original < LITTLE_IS_LEFT {
+    if is_iterated && report.correlation_with_original < LEAST_CORRELATION {
         warnings.push(format!(
             "little of the original's arrangement is left (correlation {:.2}, with the reference's {:.2}): surfaces with this \
              reference's sub-bands hardly admit another",

@@ -18,7 +18,7 @@ use asperity::surface::height_field::{
     HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, DesignError, Engine,
+    ActuatorSettings, ChannelId, Config, ContactEvent, ContactId, ContactSample, DesignError, Engine,
     Renderer, Scene, Surface, SurfaceId,
 };
 use std::error::Error;
@@ -132,7 +132,7 @@ fn stroke(
             ..ContactSample::default()
         };
         let event = match step {
-            0 => ContactEvent::begin(ContactId(1), cloth, Actuator(0), sample),
+            0 => ContactEvent::begin(ContactId(1), cloth, ChannelId(0), sample),
             _ => ContactEvent::moved(ContactId(1), sample),
         };
         scene.report(t, event)?;

@@ -13,7 +13,7 @@ mod mesh;
 use asperity::files::contact_log::{LogEvent, Names};
 use asperity::offline::{self, Options};
 use asperity::{
-    Actuator, ActuatorSettings, AudioBus, Body, ClockMode, Config, Material, Renderer, Scene, Stock, Surface,
+    ActuatorSettings, AudioBus, Body, ChannelId, ClockMode, Config, Material, Renderer, Scene, Stock, Surface,
 };
 use asperity_rapier::{Adapter, Mapping, Thing};
 use mesh::UvMesh;
@@ -130,10 +130,10 @@ fn play(
     }
     // The hand that pushed the box feels it.
     let (_, sliding) = sliding_box(&mut world);
-    let wood = Thing::of(Material::WOOD).ringing(names.bodies["box"]).felt_by(Actuator(1));
+    let wood = Thing::of(Material::WOOD).ringing(names.bodies["box"]).felt_by(ChannelId(1));
     adapter.insert(sliding, wood);
     let (finger, tip) = finger(&mut world);
-    adapter.insert(tip, Thing::of(Material::NAIL).felt_by(Actuator(0)));
+    adapter.insert(tip, Thing::of(Material::NAIL).felt_by(ChannelId(0)));
 
     let mut heard = Heard { audio: Vec::new(), haptic: [Vec::new(), Vec::new()] };
     for step in 0..(SECONDS / step_s) as u64 {

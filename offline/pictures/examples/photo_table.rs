@@ -5,7 +5,7 @@
 //! 4 texels and a quarter of the picture, says whether they are the right way up. `--maps` writes
 //! displacement and roughness as 16-bit PNG.
 
-use asperity_pictures::dark_is_deep::high_pass;
+use asperity_pictures::darkness_prior::high_pass;
 use asperity_pictures::fft2::{Fft2, angular_frequency};
 use asperity_pictures::from_photo::{MOST_TEXELS, PhotoOptions, PhotoSurface, surface_from_photo};
 use asperity_pictures::photograph::load_reduced_photograph;

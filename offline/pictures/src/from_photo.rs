@@ -12,7 +12,7 @@
 //! |---|---|
 //! | noise | [`crate::camera_noise`] |
 //! | lattice, or none | [`crate::symmetry`]; averaged in its wallpaper group's fundamental domain |
-//! | heights | [`crate::shape_from_shading`]: the light given, or found, or [dark is deep](mod@crate::dark_is_deep) |
+//! | heights | [`crate::shape_from_shading`]: the light given, or found, or [dark is deep](mod@crate::darkness_prior) |
 //! | which way up | [`Sign`] |
 //! | R and micro-relief | [`crate::relief_spectrum`] of the heights |
 //!

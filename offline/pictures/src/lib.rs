@@ -13,7 +13,7 @@
 
 pub mod borders;
 pub mod camera_noise;
-pub mod dark_is_deep;
+pub mod darkness_prior;
 pub mod distribution;
 pub mod fft2;
 pub mod flat_ground;

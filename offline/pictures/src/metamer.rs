@@ -46,13 +46,13 @@
 
 mod arrangement;
 mod bands;
-mod feel;
 mod level;
 mod search;
 mod spectrum;
+mod statistics;
 mod terraces;
 
-pub use feel::Feel;
+pub use statistics::Statistics;
 
 use crate::borders::Borders;
 use crate::pyramid::Subband;
@@ -178,7 +178,11 @@ pub fn metamer(
     progress: impl FnMut(f64),
 ) -> Result<Metamer, DesignError> {
     check_finite("original", original)?;
-    Feel::new(reference, original.width, original.height, options)?.metamer(original, |image| image, progress)
+    Statistics::new(reference, original.width, original.height, options)?.metamer(
+        original,
+        |image| image,
+        progress,
+    )
 }
 
 fn check_finite(field: &'static str, image: &Raster) -> Result<(), DesignError> {

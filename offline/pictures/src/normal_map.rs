@@ -37,10 +37,10 @@
 //! maps and photographs none passes.
 
 mod decode;
-mod next_to_zero;
 mod plausible;
 mod seams;
 mod short_waves;
+mod zero_code;
 
 pub use plausible::MOST_DOWN;
 

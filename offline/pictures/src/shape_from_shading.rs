@@ -25,14 +25,14 @@
 //! light f' is 0 at the start; |f'| is kept above 0.01 (ours).
 //!
 //! *Dark is deep* (default for diffuse or frontal light): a wave of brightness is a wave of height,
-//! as steep as it has contrast, [`dark_is_deep`](mod@crate::dark_is_deep).
+//! as steep as it has contrast, [`darkness_prior`](mod@crate::darkness_prior).
 //!
 //! *Flat ground* (default for frontal light where there is a ground): light from the viewer's
 //! direction (less than [`LEAST_SLANT_RAD`]) tells how steep a place is and not which way,
 //! [`crate::flat_ground`]. Without a ground, dark is deep is used, and said.
 
 use crate::borders::{Borders, SplitBorders};
-use crate::dark_is_deep::dark_is_deep;
+use crate::darkness_prior::darkness_prior;
 use crate::fft2::{Fft2, angular_frequency};
 use crate::flat_ground::above_flat_ground;
 use crate::gradient_field::{Derivative, Projection, Slopes};
@@ -120,7 +120,7 @@ pub fn shape_by(
         DesignError::check("light slant", light.slant_rad(), range, |slant| slant >= LEAST_SLANT_RAD)?;
     }
     let (height_px, unexplained) = match method {
-        Method::DarkIsDeep => (dark_is_deep(image), None),
+        Method::DarkIsDeep => (darkness_prior(image), None),
         Method::FlatGround => (on_flat_ground(image)?, None),
         Method::TsaiShah(steps) => (tsai_shah(&expose(image, light), light, steps), None),
         Method::Integrable(steps) => {

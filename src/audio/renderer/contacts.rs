@@ -65,7 +65,7 @@ impl Renderer {
 
     /// A tip that stands at a depth presses as hard as the surface carries it there.
     fn carried(&mut self, surface: usize, sample: &ContactSample) -> ContactSample {
-        let carried_n = sample.depth_m.map(|depth_m| self.seats[surface].carries_n(sample.uv, depth_m));
+        let carried_n = sample.depth_m.map(|depth_m| self.seats[surface].support_force_n(sample.uv, depth_m));
         let normal_force_n = carried_n.map_or(sample.normal_force_n, |n| n.min(MAX_FORCE_N));
         ContactSample { normal_force_n, ..*sample }
     }

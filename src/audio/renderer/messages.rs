@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::audio::seat::Change;
 use crate::audio::voice::Phase;
-use crate::link::message::{Dead, Felt, Message};
+use crate::link::message::{Felt, Message, Retired};
 use crate::link::stats::Counters;
 use crate::model::event::ContactEvent;
 use crate::model::id::SurfaceId;
@@ -100,7 +100,7 @@ impl Renderer {
                     Counters::add(&self.counters.quarantined, 1);
                 }
                 // There is room: the message waited for it.
-                let _ = self.to_game.send(Dead::Change(change));
+                let _ = self.to_game.send(Retired::Change(change));
                 // A resting finger feels the change.
                 self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(|voice| voice.wake());
             }

@@ -10,7 +10,7 @@
 //! ```
 
 use super::Renderer;
-use crate::link::message::{Dead, Made};
+use crate::link::message::{Made, Retired};
 use crate::link::stats::Counters;
 use crate::resource::body::Terms;
 use asperity_surface::height_field::MAX_BLOCK;
@@ -26,7 +26,7 @@ impl Renderer {
     /// The body at a place rings out, elsewhere.
     pub(super) fn let_ring(&mut self, slot: usize) {
         if self.bodies[slot].is_silent(self.position) {
-            return self.send_home(slot, Dead::Body);
+            return self.send_home(slot, Retired::Body);
         }
         let first = self.bodies.len() - TAILS;
         let tails = first..self.bodies.len();
@@ -69,11 +69,11 @@ impl Renderer {
             let left = 1.0 - (i + 1) as f32 / n as f32;
             self.buses[bus].end_with(self.position + i as u64, left * left * (3.0 - 2.0 * left) * x);
         });
-        self.send_home(seat, Dead::Cut);
+        self.send_home(seat, Retired::Cut);
     }
 
     /// Sends the body at a place home; every message waits until there is room for it.
-    fn send_home(&mut self, seat: usize, as_dead: fn(Made) -> Dead) {
+    fn send_home(&mut self, seat: usize, as_dead: fn(Made) -> Retired) {
         if let Some(body) = self.bodies[seat].take() {
             let _ = self.to_game.send(as_dead(body));
         }

@@ -32,7 +32,7 @@ const STILL_N_S: f64 = 1e-12;
 /// Closing speed of two grains, m/s.
 const GRAIN_M_S: f64 = 0.1;
 /// Below this speed a motion has no direction, m/s.
-const AIMLESS_M_S: f64 = 1e-3;
+const LEAST_SPEED_M_S: f64 = 1e-3;
 
 /// Inputs of exciters during a stretch.
 #[derive(Clone, Copy)]
@@ -91,7 +91,7 @@ impl Exciters {
     pub(super) fn press(&mut self, loudness: f64, [u, v]: [f64; 2]) {
         self.loudness.aim(loudness);
         let speed_m_s = libm::hypot(u, v);
-        if speed_m_s > AIMLESS_M_S {
+        if speed_m_s > LEAST_SPEED_M_S {
             let back = self.along[0] * u + self.along[1] * v < 0.0;
             let length = if back { -speed_m_s } else { speed_m_s };
             self.along = [u / length, v / length];

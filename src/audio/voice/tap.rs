@@ -5,7 +5,7 @@ use super::block::Scratch;
 use crate::audio::seat::Seat;
 use crate::audio::shared::Stretch;
 use crate::link::tap::Tap;
-use crate::model::event::Actuator;
+use crate::model::event::ChannelId;
 use crate::resource::tip_force::Ground;
 
 impl Voice {
@@ -53,7 +53,7 @@ impl Voice {
         if !self.asleep && n > 0 {
             self.tip.ground = Ground::at(&profile.surface, n - 1);
         }
-        let actuator = self.role.actuator.map(|channel| Actuator(channel as u16));
+        let actuator = self.role.actuator.map(|channel| ChannelId(channel as u16));
         tap.contact(&shown.block(self.contact, actuator, first_sample, count));
     }
 }

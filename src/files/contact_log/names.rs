@@ -1,7 +1,7 @@
 //! Names of a log, and the ids of a running scene that they stand for.
 
 use super::{ContactLog, LogError, LogEvent, LogHand, LogLine, LogTouching, Striker};
-use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
+use crate::model::event::{ChannelId, ContactEvent, ContactId, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use std::collections::HashMap;
@@ -73,7 +73,7 @@ impl LogEvent {
                 position: *position,
                 at_m: *at_m,
                 direction: *direction,
-                actuator: hand.actuator.map(Actuator),
+                actuator: hand.actuator.map(ChannelId),
                 holder: hand.holder(names)?,
                 probe: hand.probe(names)?,
                 gain: hand.gain.unwrap_or(1.0),
@@ -87,7 +87,7 @@ impl LogTouching {
     fn resolve(&self, names: &Names) -> Result<Touching, LogError> {
         let hand = &self.hand;
         let mut touching = Touching::on(find("surface", &self.surface, &names.surfaces)?);
-        touching.actuator = hand.actuator.map(Actuator);
+        touching.actuator = hand.actuator.map(ChannelId);
         (touching.probe, touching.holder) = (hand.probe(names)?, hand.holder(names)?);
         Ok(touching.gain(hand.gain.unwrap_or(1.0)).importance(self.importance.unwrap_or(1.0)))
     }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::model::event::{Actuator, ContactEvent, Impact};
+use crate::model::event::{ChannelId, ContactEvent, Impact};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use std::collections::HashMap;
 
@@ -94,7 +94,7 @@ fn every_key_of_the_format_is_accepted_and_those_read_past_are_told() {
     let begun = log.lines[0].event.resolve(&names()).unwrap();
     let ContactEvent::Begin { touching, .. } = begun else { panic!("{begun:?}") };
     assert_eq!((touching.probe, touching.holder), (Some(ProbeId::from_bits(1 << 32)), Some(body())));
-    assert_eq!((touching.actuator, touching.gain), (Some(Actuator(0)), 1.0));
+    assert_eq!((touching.actuator, touching.gain), (Some(ChannelId(0)), 1.0));
     let struck = log.lines[1].event.resolve(&names()).unwrap();
     assert!(matches!(struck, ContactEvent::Impact(Impact { gain: 2.0, holder: Some(_), .. })), "{struck:?}");
     assert!(ContactLog::parse_telling(LOG, "log").unwrap().1.is_empty());

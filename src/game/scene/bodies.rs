@@ -3,9 +3,10 @@
 use super::{KnownBody, Scene};
 use crate::files::contact_log::LogEdit;
 use crate::game::levels::{BodyLevel, Levels};
-use crate::link::message::{Dead, Made, Message};
+use crate::link::message::{Made, Message, Retired};
 use crate::model::bad_value::within;
 use crate::model::body::{Body, MAX_SENDS, Sends};
+use crate::model::bus::BusId;
 use crate::model::error::AddError;
 use crate::model::id::BodyId;
 use crate::model::strike_field::StrikeField;
@@ -70,9 +71,9 @@ impl Scene {
     ///
     /// # Errors
     /// When the body is not in this scene, there is no such bus, or the queue is full.
-    pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
+    pub fn set_body_bus(&mut self, id: BodyId, bus: BusId) -> Result<(), AddError> {
         self.known_body(id)?;
-        self.checked_bus(bus)?;
+        let bus = self.checked_bus(bus.0)?;
         self.send(Message::SetBodyBus { slot: id.index(), bus })?;
         if let Some(given) = self.given.get_mut(&id) {
             (given.bus, given.sends) = (bus, Sends::default());
@@ -86,13 +87,13 @@ impl Scene {
     /// each of them. The gain of the body counts on all of them.
     ///
     /// ```
-    /// use asperity::{AudioBus, Body, Config, Engine, Material, Stock};
+    /// use asperity::{AudioBus, Body, BusId, Config, Engine, Material, Stock};
     ///
     /// let config = Config { audio: vec![AudioBus::default(); 2], ..Config::default() };
     /// let Engine { mut scene, .. } = config.build()?;
     /// let bell = scene.add_body(Body::stock(Stock::Bowl, Material::BRASS, 0.1)?)?;
     /// // The second player stands further away.
-    /// scene.set_body_send(bell, 1, 0.25)?;
+    /// scene.set_body_send(bell, BusId(1), 0.25)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -100,9 +101,9 @@ impl Scene {
     /// When the body is not in this scene, there is no such bus or it is the body's own (whose gain
     /// is the body's), the gain is not in 0–1000, the body is sent to four others already, or the
     /// queue is full.
-    pub fn set_body_send(&mut self, id: BodyId, bus: usize, gain: f64) -> Result<(), AddError> {
+    pub fn set_body_send(&mut self, id: BodyId, bus: BusId, gain: f64) -> Result<(), AddError> {
         self.known_body(id)?;
-        self.checked_bus(bus)?;
+        let bus = self.checked_bus(bus.0)?;
         let gain = within("gain", gain, limits::impact::GAIN)?;
         let Some(given) = self.given.get(&id).filter(|given| given.bus != bus) else {
             return Err(AddError::Unknown("further bus"));
@@ -213,9 +214,9 @@ impl Scene {
     pub fn collect(&mut self) -> usize {
         let mut freed = 0;
         while let Some(dead) = self.from_audio.receive() {
-            self.open_ports -= usize::from(matches!(dead, Dead::Outlet(_)));
+            self.open_ports -= usize::from(matches!(dead, Retired::Outlet(_)));
             freed += 1;
-            if let Dead::Body(body) = dead
+            if let Retired::Body(body) = dead
                 && body.of.model.shapes.is_none()
             {
                 if self.rested.len() == MOST_RESTED {

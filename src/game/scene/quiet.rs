@@ -4,8 +4,9 @@ use super::Scene;
 use crate::files::contact_log::LogEdit;
 use crate::link::message::Message;
 use crate::model::bad_value::within;
+use crate::model::bus::BusId;
 use crate::model::error::AddError;
-use crate::model::event::Actuator;
+use crate::model::event::ChannelId;
 use crate::model::id::BodyId;
 use asperity_dsp::limits;
 
@@ -15,7 +16,7 @@ impl Scene {
     ///
     /// # Errors
     /// When there is no such channel, the gain is not in 0–10, or the queue is full.
-    pub fn set_haptic_gain(&mut self, actuator: Actuator, gain: f64) -> Result<(), AddError> {
+    pub fn set_haptic_gain(&mut self, actuator: ChannelId, gain: f64) -> Result<(), AddError> {
         let channel = usize::from(actuator.0);
         if channel >= self.config.actuators.len() {
             return Err(AddError::Unknown("actuator"));
@@ -30,8 +31,8 @@ impl Scene {
     ///
     /// # Errors
     /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
-    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
-        self.checked_bus(bus)?;
+    pub fn set_audio_gain(&mut self, bus: BusId, gain: f64) -> Result<(), AddError> {
+        let bus = self.checked_bus(bus.0)?;
         let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
         self.send(Message::SetAudioGain { bus, gain })?;
         self.config.audio[bus].gain = gain;

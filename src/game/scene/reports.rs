@@ -8,7 +8,7 @@ use crate::link::stats::Counters;
 use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::{Refusal, ReportError};
-use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
+use crate::model::event::{ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
@@ -202,12 +202,12 @@ impl Scene {
     /// Who feels it, what is held, and what touches have to be in this scene.
     fn check_hand(
         &self,
-        actuator: Option<Actuator>,
+        actuator: Option<ChannelId>,
         holder: Option<BodyId>,
         probe: Option<ProbeId>,
     ) -> Result<(), Refusal> {
         let channels = self.config.actuators.len();
-        if let Some(Actuator(index)) = actuator.filter(|actuator| usize::from(actuator.0) >= channels) {
+        if let Some(ChannelId(index)) = actuator.filter(|actuator| usize::from(actuator.0) >= channels) {
             return Err(Refusal::UnknownActuator { index, channels });
         }
         if let Some(holder) = holder {
@@ -273,7 +273,7 @@ impl Scene {
         Counters::add(&self.counters.shortened, u64::from(shortened));
         let other = impact.other.map(BodyId::index);
         // What is held is felt; by the first channel, if no other is named.
-        let channel = impact.actuator.or(impact.holder.map(|_| Actuator(0)));
+        let channel = impact.actuator.or(impact.holder.map(|_| ChannelId(0)));
         let felt = channel
             .map(|channel| Felt { channel: usize::from(channel.0), probe: impact.probe.map(ProbeId::index) });
         self.clock.note_strike(stamp);

@@ -2,13 +2,13 @@
 
 use crate::link::outlet::PortSetup;
 use crate::model::error::AddError;
-use crate::model::event::Actuator;
+use crate::model::event::ChannelId;
 
 /// Which signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feed {
     /// Samples that drive an actuator.
-    Haptic(Actuator),
+    Haptic(ChannelId),
     /// Samples of a bus.
     Bus(usize),
 }
@@ -18,7 +18,7 @@ impl Feed {
     /// When the engine has no such signal.
     pub(super) fn check(self, setup: &PortSetup<'_>) -> Result<(), AddError> {
         match self {
-            Self::Haptic(Actuator(channel)) if usize::from(channel) >= setup.haptic_channels => {
+            Self::Haptic(ChannelId(channel)) if usize::from(channel) >= setup.haptic_channels => {
                 Err(AddError::Unknown("actuator"))
             }
             Self::Bus(bus) if bus >= setup.audio_buses => {

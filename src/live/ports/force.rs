@@ -13,7 +13,7 @@ use crate::link::overwriting::{Reader, Writer, ring};
 use crate::link::tap::ContactBlock;
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
-use crate::model::event::{Actuator, ContactId};
+use crate::model::event::{ChannelId, ContactId};
 use asperity_dsp::limits;
 
 /// A port of forces.
@@ -77,7 +77,7 @@ impl Outlet for ForceOutlet {
 fn packed(row: &ForceRow) -> [u32; ROW_WORDS] {
     let (kind, name) = match row.of {
         Of::Contact(ContactId(name)) => (0, name),
-        Of::Hand(Actuator(channel)) => (1, u64::from(channel)),
+        Of::Hand(ChannelId(channel)) => (1, u64::from(channel)),
     };
     let [x, y, z] = row.force_n.map(f64::to_bits);
     let mut words = [0; ROW_WORDS];
@@ -91,7 +91,7 @@ fn unpacked(words: &[u32; ROW_WORDS]) -> ForceRow {
     let value = |index: usize| u64::from(words[2 * index]) | u64::from(words[2 * index + 1]) << 32;
     let of = match value(1) {
         0 => Of::Contact(ContactId(value(2))),
-        _ => Of::Hand(Actuator(value(2) as u16)),
+        _ => Of::Hand(ChannelId(value(2) as u16)),
     };
     ForceRow { tick: value(0), of, force_n: [3, 4, 5].map(|index| f64::from_bits(value(index))) }
 }
@@ -105,7 +105,7 @@ impl ForcePort {
 
     /// The newest force of a hand, N, and its tick; what lies before is passed over, and is not
     /// counted as lost. For a device loop that wants the present and nothing else.
-    pub fn newest(&mut self, hand: Actuator) -> Option<(u64, [f64; 3])> {
+    pub fn newest(&mut self, hand: ChannelId) -> Option<(u64, [f64; 3])> {
         let rows = std::iter::from_fn(|| self.read());
         rows.filter(|row| row.of == Of::Hand(hand)).last().map(|row| (row.tick, row.force_n))
     }

@@ -19,8 +19,8 @@
 //! one that lies before a touch is exactly 0 N.
 
 use crate::link::tap::ContactBlock;
-use crate::model::event::{Actuator, ContactId};
-use asperity_surface::answer::capped;
+use crate::model::event::{ChannelId, ContactId};
+use asperity_surface::force_output::capped;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Half the length of h, ticks: how far rows lag behind what is rendered.
@@ -38,7 +38,7 @@ pub enum Of {
     /// One contact's.
     Contact(ContactId),
     /// The sum of all contacts that this channel's hand feels.
-    Hand(Actuator),
+    Hand(ChannelId),
 }
 
 /// A force at one tick.
@@ -69,7 +69,7 @@ pub struct ForceRows {
 #[derive(Debug, Clone)]
 struct Track {
     contact: ContactId,
-    actuator: Option<Actuator>,
+    actuator: Option<ChannelId>,
     /// By their tick, modulo their number.
     rows: Box<[OpenRow]>,
     /// The first that is open, and one past the last that lies within the contact.
@@ -283,7 +283,7 @@ mod tests {
             rows.add(&ContactBlock {
                 first_sample,
                 contact: ContactId(7),
-                actuator: Some(Actuator(0)),
+                actuator: Some(ChannelId(0)),
                 position_m: &[],
                 uv: &[],
                 velocity_m_s: &[],
@@ -362,7 +362,7 @@ mod tests {
                 rows.add(&ContactBlock {
                     first_sample: 64 * cell,
                     contact: ContactId(contact),
-                    actuator: Some(Actuator(3)),
+                    actuator: Some(ChannelId(3)),
                     position_m: &[],
                     uv: &[],
                     velocity_m_s: &[],
@@ -376,7 +376,7 @@ mod tests {
         }
         let of = |of: Of| told.iter().filter(move |row| row.of == of);
         assert!(of(Of::Contact(ContactId(1))).all(|row| (row.force_n[2] - 15.0).abs() < 1e-12));
-        assert!(of(Of::Hand(Actuator(3))).count() > 20);
-        assert!(of(Of::Hand(Actuator(3))).all(|row| (row.force_n[2] - 20.0).abs() < 1e-12));
+        assert!(of(Of::Hand(ChannelId(3))).count() > 20);
+        assert!(of(Of::Hand(ChannelId(3))).all(|row| (row.force_n[2] - 20.0).abs() < 1e-12));
     }
 }

@@ -16,10 +16,10 @@
 //!
 //! ```
 //! use asperity::live::ports::{Feed, Pcm};
-//! use asperity::{Actuator, Config, Engine};
+//! use asperity::{ChannelId, Config, Engine};
 //!
 //! let Engine { mut scene, mut renderer, .. } = Config::live(48_000.0).build()?;
-//! let mut port = scene.open_port(Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.1 })?;
+//! let mut port = scene.open_port(Pcm { from: Feed::Haptic(ChannelId(0)), holds_s: 0.1 })?;
 //! let (mut haptic, mut audio) = ([0.0; 64], [0.0; 64]);
 //! renderer.render(&mut [&mut haptic], &mut [&mut audio]);
 //! let mut felt = [0.0; 256];

@@ -5,7 +5,7 @@ use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 use crate::link::overwriting::{Reader, Writer, ring};
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
-use crate::model::event::Actuator;
+use crate::model::event::ChannelId;
 use asperity_dsp::limits;
 
 /// A port of samples.
@@ -45,7 +45,7 @@ impl PortKind for Pcm {
 
 impl Outlet for PcmOutlet {
     fn haptic(&mut self, channel: usize, _first: u64, samples: &[f32]) {
-        if self.from == Feed::Haptic(Actuator(channel as u16)) {
+        if self.from == Feed::Haptic(ChannelId(channel as u16)) {
             self.words.write(samples.iter().map(|x| x.to_bits()));
         }
     }

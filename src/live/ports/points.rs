@@ -10,7 +10,7 @@ use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 use crate::link::overwriting::{Reader, Writer, ring};
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
-use crate::model::event::Actuator;
+use crate::model::event::ChannelId;
 use asperity_dsp::limits;
 pub use asperity_dsp::vibration_points::{Point, PointSettings, Tone};
 use asperity_dsp::vibration_points::{PointDesign, PointState};
@@ -68,7 +68,7 @@ impl PointsOutlet {
 
 impl Outlet for PointsOutlet {
     fn haptic(&mut self, channel: usize, _first: u64, samples: &[f32]) {
-        if self.from == Feed::Haptic(Actuator(channel as u16)) {
+        if self.from == Feed::Haptic(ChannelId(channel as u16)) {
             self.take(samples);
         }
     }

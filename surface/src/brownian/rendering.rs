@@ -18,7 +18,7 @@
 //! fixes the direction at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the
 //! thesis has none).
 
-use crate::answer::AnswerAt;
+use crate::force_output::ForceAt;
 pub use crate::force_rendering::Rendering;
 use crate::height_field::{
     HeightField, MAX_BLOCK, NO_TOUCH_N, Part, PathBlock, Properties, Setup, SurfaceBlock, WavelengthBand,
@@ -93,7 +93,7 @@ impl BrownianForce {
             let gradient = out.gradient[i];
             let presses = path.pressed_n(i) > NO_TOUCH_N;
             let force_n = if presses { self.force_n(gradient, *velocity_m_s) } else { [0.0; 3] };
-            out.answer.set(i, AnswerAt { force_n, push_per_n: gradient, cap_n: f64::INFINITY });
+            out.answer.set(i, ForceAt { force_n, push_per_n: gradient, cap_n: f64::INFINITY });
         }
     }
 }

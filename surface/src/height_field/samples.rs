@@ -1,7 +1,7 @@
 //! Samples of a path and of the surface along it: blocks that go into a source and come out of it.
 
-use crate::answer::{Answer, AnswerAt};
 use crate::block::MAX_BLOCK;
+use crate::force_output::{ForceAt, ForceOutput};
 use crate::spline::Working;
 
 /// Path of a contact during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long,
@@ -97,7 +97,7 @@ pub struct SurfaceBlock {
     /// the secant, not the slope: sand gives way by a law that is no straight line.
     pub compliance_m_n: [f64; MAX_BLOCK],
     /// The force with which it answers; only where [slopes](PathBlock::slopes) are read.
-    pub answer: Answer,
+    pub answer: ForceOutput,
     /// Relief that the source really has about each sample, where the path
     /// [asks](PathBlock::full_power_m2).
     pub power: Power,
@@ -120,9 +120,9 @@ impl SurfaceBlock {
 
     /// The relief of the first `n` entries has a force law of its own, so that its slope pushes no
     /// more.
-    pub fn push_no_slope(&mut self, n: usize) {
+    pub fn clear_gradient_force(&mut self, n: usize) {
         for (i, gradient) in self.gradient.iter().enumerate().take(n) {
-            self.answer.add(i, &AnswerAt { push_per_n: *gradient, ..AnswerAt::NONE }, 1.0);
+            self.answer.add(i, &ForceAt { push_per_n: *gradient, ..ForceAt::NONE }, 1.0);
         }
     }
 }
@@ -135,7 +135,7 @@ impl Default for SurfaceBlock {
             roughness: [0.0; MAX_BLOCK],
             friction: [0.0; MAX_BLOCK],
             compliance_m_n: [0.0; MAX_BLOCK],
-            answer: Answer::default(),
+            answer: ForceOutput::default(),
             power: Power::default(),
             working: Working::new(),
         }

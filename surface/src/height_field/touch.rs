@@ -46,7 +46,7 @@ pub struct Reaction {
     pub stirs: bool,
     /// The force that carries a tip where it [stands](TouchKind::Stands), N, 0 above the ground;
     /// none where the ground is hard.
-    pub carries_n: Option<f64>,
+    pub support_force_n: Option<f64>,
 }
 
 impl Reaction {
@@ -57,12 +57,12 @@ impl Reaction {
         let rate = self.grain_rate_per_s + weighted_rate;
         let momentum =
             self.grain_rate_per_s * self.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;
-        let carried_n = part.carries_n.map(|n| self.carries_n.unwrap_or(0.0) + weight * n);
+        let carried_n = part.support_force_n.map(|n| self.support_force_n.unwrap_or(0.0) + weight * n);
         Self {
             grain_rate_per_s: rate,
             grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
             stirs: self.stirs || part.stirs,
-            carries_n: carried_n.or(self.carries_n),
+            support_force_n: carried_n.or(self.support_force_n),
         }
     }
 }

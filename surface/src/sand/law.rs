@@ -31,7 +31,7 @@
 //! grains finer than a cell do not push a tool sideways: it rides on many of them at once.
 
 use super::buried::{Buried, MAX_BURIED, Met, first_met};
-use crate::answer::capped;
+use crate::force_output::capped;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::{Range, sand as limits};
 

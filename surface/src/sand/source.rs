@@ -31,8 +31,8 @@ use super::patch::Patch;
 use super::simulation::{Pose, SandDesign, SandFigures, SandSimulation};
 use super::tool::Tool;
 use super::worker::SandWorker;
-use crate::answer::AnswerAt;
 use crate::fade::Fade;
+use crate::force_output::ForceAt;
 use crate::height_field::{
     Beyond, Finish, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
     TouchKind, WavelengthBand,
@@ -249,12 +249,12 @@ impl SandSource {
             let met = law.met(path.position_m[i], out.height_m[i]);
             let aside = law.push_per_n(met.as_ref(), path.pressed_n(i));
             let push_per_n = [0, 1].map(|a| out.gradient[i][a] + aside[a] - drag_s_per_m * velocity_m_s[a]);
-            out.answer.set(i, AnswerAt { push_per_n, cap_n: law.cap_n, ..AnswerAt::NONE });
+            out.answer.set(i, ForceAt { push_per_n, cap_n: law.cap_n, ..ForceAt::NONE });
         }
     }
 
     /// The force at which the sand carries a tip `depth_m` below the untouched bed, N.
-    fn carries_n(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
+    fn support_force_n(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
         // A tip on its way up still stands between the heaps of its way down.
         let radius_m = WIDE * self.tool.print_radius_m(depth_m.max(BEARING_DEPTH_M));
         let level_m = match &self.link {
@@ -307,7 +307,7 @@ impl SandSource {
         let law = self.law.target();
         let speed = libm::hypot(touch.velocity_m_s[0], touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
-        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs, carries_n: None }
+        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs, support_force_n: None }
     }
 }
 
@@ -394,9 +394,10 @@ impl HeightField for SandSource {
                 Reaction::default()
             }
             TouchKind::Presses => self.press(touch),
-            TouchKind::Stands { depth_m } => {
-                Reaction { carries_n: Some(self.carries_n(touch.position_m, depth_m)), ..Reaction::default() }
-            }
+            TouchKind::Stands { depth_m } => Reaction {
+                support_force_n: Some(self.support_force_n(touch.position_m, depth_m)),
+                ..Reaction::default()
+            },
         }
     }
 

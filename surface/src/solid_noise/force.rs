@@ -8,7 +8,7 @@
 //! the contact and friction forces; the relief of the same noise then does not push a second time.
 
 use super::{ForceDirection, SolidNoise, SolidNoiseParameters};
-use crate::answer::AnswerAt;
+use crate::force_output::ForceAt;
 use crate::height_field::{MAX_BLOCK, NO_TOUCH_N, PathBlock, SurfaceBlock};
 
 impl SolidNoise {
@@ -72,7 +72,7 @@ impl SolidNoise {
         for (i, velocity_m_s) in path.velocity_m_s.iter().enumerate().take(MAX_BLOCK) {
             let force_n = parameters.force_n(texture[i], *velocity_m_s, path.pressed_n(i));
             let push_per_n = [0.0; 2];
-            out.answer.add(i, &AnswerAt { force_n, push_per_n, cap_n: f64::INFINITY }, weight[i]);
+            out.answer.add(i, &ForceAt { force_n, push_per_n, cap_n: f64::INFINITY }, weight[i]);
         }
     }
 }

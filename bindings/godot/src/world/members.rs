@@ -5,7 +5,7 @@ use crate::body::AsperityBody;
 use crate::surface::AsperitySurface;
 use asperity::load::{Overrides, ReadSurface};
 use asperity::surface::sand::SandWorker;
-use asperity::{BodyId, SurfaceId};
+use asperity::{BusId, BodyId, SurfaceId};
 use godot::prelude::*;
 use std::path::Path;
 
@@ -33,7 +33,7 @@ impl AsperityWorld {
         let id = self.tried("AsperityBody", |running| {
             let overrides = Overrides { files: &files, live: true, ..Overrides::default() };
             let read = running.scene.read_body(&table, Path::new(""), &overrides);
-            let body = read.map_err(|error| error.to_string())?.on_bus(bus).gain(gain);
+            let body = read.map_err(|error| error.to_string())?.bus(BusId(bus)).gain(gain);
             let id = running.scene.add_body(body).map_err(|error| error.to_string())?;
             running.names.bodies.insert(name.into(), id);
             Ok(id.to_bits() as i64)

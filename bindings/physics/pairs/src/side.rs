@@ -1,6 +1,6 @@
 //! One of the two of a pair: what it is to asperity, and how it moves.
 
-use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvPlace};
+use asperity::{BodyId, ChannelId, Material, ProbeId, SurfaceId, UvPlace};
 use glam::Vec3;
 
 /// Radius of an edge or a corner that nobody gave one, m: what is broken with sandpaper. Assumed.
@@ -16,7 +16,7 @@ pub struct Thing {
     /// Surface that is stroked on it.
     pub surface: Option<SurfaceId>,
     /// The haptic channel that feels it: a finger, or a tool in the hand.
-    pub actuator: Option<Actuator>,
+    pub actuator: Option<ChannelId>,
     /// Probe that it touches with; none = a finger is the engine's own probe, anything else a rigid
     /// one.
     pub probe: Option<ProbeId>,

@@ -2,7 +2,7 @@
 //! it.
 
 use crate::vector::{own, told};
-use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvMapping, UvPlace, UvTriangle};
+use asperity::{BodyId, ChannelId, Material, ProbeId, SurfaceId, UvMapping, UvPlace, UvTriangle};
 use asperity_pairs::{NOMINAL_FORCE_N, Vec3, axis_radius_m};
 use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::ShapeType;
@@ -14,7 +14,7 @@ pub struct Thing {
     pub(crate) material: Material,
     pub(crate) body: Option<BodyId>,
     pub(crate) surface: Option<(SurfaceId, Mapping)>,
-    pub(crate) actuator: Option<Actuator>,
+    pub(crate) actuator: Option<ChannelId>,
     pub(crate) probe: Option<ProbeId>,
     pub(crate) radius_m: Option<f64>,
     pub(crate) belt_m_s: Vector,
@@ -54,7 +54,7 @@ impl Thing {
 
     /// Is a finger, or held in a hand: what it touches is felt.
     #[must_use]
-    pub fn felt_by(mut self, actuator: Actuator) -> Self {
+    pub fn felt_by(mut self, actuator: ChannelId) -> Self {
         self.actuator = Some(actuator);
         self
     }

@@ -2,8 +2,8 @@
 //! masses and speeds of mechanics.
 
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, Engine, Impact, LevelPolicy, Material, Renderer,
-    Scene, Stock, Surface, SurfaceId,
+    Body, BodyId, ChannelId, Config, ContactEvent, ContactId, Engine, Impact, LevelPolicy, Material,
+    Renderer, Scene, Stock, Surface, SurfaceId,
 };
 use asperity_rapier::{Adapter, Kind, Mapping, Thing};
 use rapier3d::prelude::*;
@@ -255,16 +255,16 @@ fn a_rolling_ball_rolls_and_takes_its_place_of_contact_along() {
 fn a_finger_lands_as_a_contact_and_a_held_tool_strikes_and_is_felt() {
     let mut world = World::new();
     let down = |x: f32| at(x, 0.05, 0.0).linvel(Vector::new(0.0, -0.5, 0.0)).lock_rotations();
-    world.insert(down(-0.5), ball(0.008, 0.02, 0.0), Thing::of(Material::NAIL).felt_by(Actuator(0)));
+    world.insert(down(-0.5), ball(0.008, 0.02, 0.0), Thing::of(Material::NAIL).felt_by(ChannelId(0)));
     let pen = world.body(Stock::Bar, 0.15, Material::PLASTIC);
-    let held = Thing::of(Material::PLASTIC).ringing(pen).felt_by(Actuator(0));
+    let held = Thing::of(Material::PLASTIC).ringing(pen).felt_by(ChannelId(0));
     world.insert(down(0.5), ball(0.008, 0.02, 0.0), held);
     world.run(0.5);
     let impacts = world.impacts();
     assert_eq!(impacts.len(), 1, "{impacts:?}");
     assert_eq!(
         (impacts[0].1.holder, impacts[0].1.actuator, impacts[0].1.body),
-        (Some(pen), Some(Actuator(0)), world.slab)
+        (Some(pen), Some(ChannelId(0)), world.slab)
     );
     let landing = world.events.iter().find_map(|(_, event)| match event {
         ContactEvent::Begin { touching, sample, .. } if touching.holder.is_none() => {
@@ -273,7 +273,7 @@ fn a_finger_lands_as_a_contact_and_a_held_tool_strikes_and_is_felt() {
         _ => None,
     });
     let (touching, sample) = landing.unwrap();
-    assert!(touching.actuator == Some(Actuator(0)) && touching.probe.is_none(), "{touching:?}");
+    assert!(touching.actuator == Some(ChannelId(0)) && touching.probe.is_none(), "{touching:?}");
     assert!((sample.closing_m_s - 1.0).abs() < 0.3, "{sample:?}");
     // A finger that lies still is still there.
     assert_eq!(world.open().len(), 2);
@@ -325,7 +325,7 @@ fn a_mesh_gives_the_coordinates_of_its_own_vertices_and_a_forgotten_collider_end
     world.adapter.insert(mesh, Thing::of(Material::STONE).with_surface(world.top, uv));
     let slippery = ball(0.02, 0.1, 0.0).friction(0.0).friction_combine_rule(CoefficientCombineRule::Min);
     let dragged = at(-0.5, 1.0205, 0.25).linvel(Vector::new(0.4, 0.0, 0.0)).lock_rotations();
-    world.insert(dragged, slippery, Thing::of(Material::NAIL).felt_by(Actuator(0)));
+    world.insert(dragged, slippery, Thing::of(Material::NAIL).felt_by(ChannelId(0)));
     world.run(1.0);
     let Some((_, ContactEvent::Moved { sample, .. })) = world.events.last() else {
         panic!("it is not reported")

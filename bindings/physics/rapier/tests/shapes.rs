@@ -3,8 +3,8 @@
 //! lands.
 
 use asperity::{
-    Actuator, Body, Config, ContactEvent, Engine, Impact, LevelPolicy, Material, ModalModel, Renderer, Scene,
-    Stock, Surface, SurfaceId,
+    Body, ChannelId, Config, ContactEvent, Engine, Impact, LevelPolicy, Material, ModalModel, Renderer,
+    Scene, Stock, Surface, SurfaceId,
 };
 use asperity_rapier::{Adapter, Kind, Mapping, Notice, Thing};
 use rapier3d::prelude::*;
@@ -318,7 +318,7 @@ fn a_kinematic_hand_on_a_fixed_table_is_heard_by_a_nominal_force_and_says_what_i
         if listed {
             collider = collider.active_collision_types(ActiveCollisionTypes::all());
         }
-        world.insert(hand, collider, Thing::of(Material::NAIL).felt_by(Actuator(0)));
+        world.insert(hand, collider, Thing::of(Material::NAIL).felt_by(ChannelId(0)));
         world.run(1.0);
         let warnings: Vec<Notice> = world.adapter.warnings().iter().map(|warning| warning.notice).collect();
         if listed {
@@ -485,7 +485,7 @@ fn whatever_scrapes_or_rolls_has_a_contact_or_says_why_not() {
                 .friction(if case == "rolls" { 0.8 } else { 0.05 })
                 .active_collision_types(ActiveCollisionTypes::all());
             let thing = Thing::of(Material::STEEL);
-            let thing = if case == "hand" { thing.felt_by(Actuator(0)) } else { thing };
+            let thing = if case == "hand" { thing.felt_by(ChannelId(0)) } else { thing };
             world.insert(body, collider, thing);
             let mut warned = Vec::new();
             for step in 0..60 {

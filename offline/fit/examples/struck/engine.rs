@@ -23,7 +23,7 @@ pub fn struck(modes: &[Mode], burst: Option<&[f32]>, rate_hz: f64, count: usize,
     let body = model
         .with_residual(residual, 1.0)
         .ok()
-        .and_then(|model| scene.add_body(asperity::Body::new(model).of(HARD)).ok());
+        .and_then(|model| scene.add_body(asperity::Body::new(model).material(HARD)).ok());
     let Some(body) = body else { return out };
     let impact = Impact {
         body,

@@ -2,7 +2,7 @@
 
 use super::options::PhotoOptions;
 use super::sign::Sign;
-use crate::dark_is_deep::high_pass;
+use crate::darkness_prior::high_pass;
 use crate::fft2::{Fft2, angular_frequency};
 use crate::light::{Light, estimate_light};
 use crate::shape_from_shading::{LEAST_SLANT_RAD, Method, STEPS, Shape, shape_by};

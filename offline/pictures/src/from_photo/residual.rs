@@ -4,14 +4,14 @@
 //! ```text
 //! Z(ω) += Z_r(ω) g(λ)        g = 1 up to FINE_PX[0], cos² in octaves down to 0 at FINE_PX[1]
 //! ```
-//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::dark_is_deep`]). A mean
+//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::darkness_prior`]). A mean
 //! cell has lost the grain that lies on the pattern, and the engine's overlay begins at two texels
 //! only: without g nothing at all would be felt between two texels and the cell. Longer waves of
 //! the residual are dirt, wear and uneven light, which is what averaging is for.
 
 use super::heights::contrast;
 use crate::camera_noise::without_noise_and_steps;
-use crate::dark_is_deep::dark_is_deep;
+use crate::darkness_prior::darkness_prior;
 use crate::waves::Waves;
 use asperity_surface::raster::Raster;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -26,7 +26,7 @@ pub(super) fn residual_heights(residual: &Raster, picture: &Raster, jpeg_divisor
     let mut picture = residual.map(|v| v + mean);
     picture = without_noise_and_steps(&picture, jpeg_divisor).picture;
     picture = contrast(&picture);
-    dark_is_deep(&picture)
+    darkness_prior(&picture)
 }
 
 /// Adds the fine waves of the residual's heights to those of the mean cell.

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | A | every sub-band takes the reference's histogram, all together take its spectral envelope |
 //! | H | the heights take the reference's histogram: last, so that plateaus stay flat and nothing leaves its range |
-//! | s; m, k | [`BAND_STEP`]; of these two one at the most, by [`Gait`] |
+//! | s; m, k | [`BAND_STEP`]; of these two one at the most, by [`Schedule`] |
 //!
 //! What a coarser grid has changed is added by its spectrum before the first pass here. So long
 //! waves, which on the fine grid move by a texel a pass, are at their place at a sixteenth of the
@@ -80,7 +80,7 @@ pub(super) struct Task {
     /// Passes asked for.
     pub passes: usize,
     pub parts: Parts,
-    pub gait: Gait,
+    pub gait: Schedule,
 }
 
 /// Task: a surface, and the one to be made of it.
@@ -94,7 +94,7 @@ pub(super) struct Sought<'a> {
 
 /// Steps of a pass beyond the change that matching the bands makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Gait {
+pub(super) enum Schedule {
     /// Nothing: this keeps the most of the original's arrangement.
     Plain,
     /// It goes on from where it would be had the heights taken nothing back ([`KEPT`]): for
@@ -104,7 +104,7 @@ pub(super) enum Gait {
     Momentum,
 }
 
-impl Gait {
+impl Schedule {
     /// This one, or nothing beyond the change in the passes that begin and end all of them:
     /// momentum would turn bands over while steps are gentle, a memory of them does no harm.
     fn in_pass(self, pass: usize, all: usize) -> Self {
@@ -165,9 +165,9 @@ impl Level {
 
     /// Passes on this grid, of those asked for. Terraces get more of them where others need few:
     /// their edges are on the fine grid alone.
-    pub fn passes(&self, asked: usize, gait: Gait) -> usize {
+    pub fn passes(&self, asked: usize, gait: Schedule) -> usize {
         let share = (SIDE / texels_a_side(self.size)).min(MOST_PASSES);
-        let share = if gait == Gait::Remembering && share < 1.0 { share.sqrt() } else { share };
+        let share = if gait == Schedule::Remembering && share < 1.0 { share.sqrt() } else { share };
         ((asked as f64 * share).round() as usize).max(asked.min(FEWEST_PASSES))
     }
 

@@ -11,7 +11,7 @@
 //! never longer than 1, and is the flatter the higher both its blue and what red and green say of
 //! it.
 
-use super::next_to_zero::NextToZero;
+use super::zero_code::NextToZero;
 use crate::gradient_field::Slopes;
 use asperity_surface::raster::Raster;
 

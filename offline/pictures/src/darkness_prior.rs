@@ -33,7 +33,7 @@ pub const UNIT_SLOPE_PX: f64 = 7.0;
 
 /// Heights in texels of an image of linear brightness in any unit.
 #[must_use]
-pub fn dark_is_deep(image: &Raster) -> Raster {
+pub fn darkness_prior(image: &Raster) -> Raster {
     let mean = image.mean();
     let image = SplitBorders::of(image, Borders::Detect).periodic;
     let (w, h) = (image.width, image.height);
@@ -61,7 +61,7 @@ mod tests {
     fn a_wave_is_as_steep_as_it_has_contrast_whatever_the_exposure() {
         for exposure in [0.2, 1.0] {
             let wave = |x: usize| exposure * (1.0 + 0.1 * (TAU * x as f64 / 4.0).cos());
-            let heights = dark_is_deep(&Raster::from_fn(128, 64, |x, _| wave(x)));
+            let heights = darkness_prior(&Raster::from_fn(128, 64, |x, _| wave(x)));
             let power = heights.values.iter().map(|z| z * z).sum::<f64>() / heights.values.len() as f64;
             let slope = (2.0 * power).sqrt() * TAU / 4.0;
             assert!((slope / (UNIT_SLOPE_PX / 4.0).sqrt() - 0.1).abs() < 0.002, "{slope}");

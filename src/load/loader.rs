@@ -1,4 +1,4 @@
-//! Means: what every thing of a scene is made with.
+//! The loader: files, maps and makers that every thing of a scene is loaded with.
 
 use super::maps::Maps;
 use crate::files::Files;
@@ -6,9 +6,9 @@ use crate::files::scene_file::MakeSource;
 use asperity_surface::sand::SandWorker;
 use std::cell::RefCell;
 
-/// Makers of every thing of a scene.
+/// Files, maps and makers of a scene.
 #[derive(Clone, Copy)]
-pub(crate) struct Maker<'a> {
+pub(crate) struct Loader<'a> {
     pub files: &'a dyn Files,
     /// Maps that were made for other things of the scene.
     pub maps: &'a Maps,

@@ -1,4 +1,4 @@
-//! Answer: the force with which a surface answers a tool, beside carrying it and rubbing on it.
+//! ForceOutput: the force with which a surface answers a tool, beside carrying it and rubbing on it.
 //!
 //! ```text
 //! F_xy = a_xy + F_c (p − ∇h) − μ F_c v / |v|        F_z = a_z + F_c        |F| ≤ cap
@@ -18,18 +18,18 @@
 
 use crate::block::MAX_BLOCK;
 
-/// Answer of a surface at each sample of a block.
+/// ForceOutput of a surface at each sample of a block.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct ForceOutput {
     is_empty: bool,
     force_n: [[f64; 3]; MAX_BLOCK],
     push_per_n: [[f64; 2]; MAX_BLOCK],
     cap_n: [f64; MAX_BLOCK],
 }
 
-/// Answer of a surface at one sample.
+/// ForceOutput of a surface at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AnswerAt {
+pub struct ForceAt {
     /// Along u, v and out of the surface, N.
     pub force_n: [f64; 3],
     /// Along u and v, N per newton of contact force.
@@ -38,14 +38,14 @@ pub struct AnswerAt {
     pub cap_n: f64,
 }
 
-impl AnswerAt {
+impl ForceAt {
     /// A surface that pushes with its slope alone.
     pub const NONE: Self = Self { force_n: [0.0; 3], push_per_n: [0.0; 2], cap_n: f64::INFINITY };
 }
 
-impl Default for Answer {
+impl Default for ForceOutput {
     fn default() -> Self {
-        let AnswerAt { force_n, push_per_n, cap_n } = AnswerAt::NONE;
+        let ForceAt { force_n, push_per_n, cap_n } = ForceAt::NONE;
         Self {
             is_empty: true,
             force_n: [force_n; MAX_BLOCK],
@@ -55,7 +55,7 @@ impl Default for Answer {
     }
 }
 
-impl Answer {
+impl ForceOutput {
     /// No answer at any sample.
     pub fn clear(&mut self) {
         if !self.is_empty {
@@ -71,12 +71,12 @@ impl Answer {
 
     /// The answer at a sample.
     #[must_use]
-    pub fn at(&self, i: usize) -> AnswerAt {
-        AnswerAt { force_n: self.force_n[i], push_per_n: self.push_per_n[i], cap_n: self.cap_n[i] }
+    pub fn at(&self, i: usize) -> ForceAt {
+        ForceAt { force_n: self.force_n[i], push_per_n: self.push_per_n[i], cap_n: self.cap_n[i] }
     }
 
     /// Adds an answer with a weight; the lowest cap of those that have a weight counts.
-    pub fn add(&mut self, i: usize, part: &AnswerAt, weight: f64) {
+    pub fn add(&mut self, i: usize, part: &ForceAt, weight: f64) {
         if weight == 0.0 {
             return;
         }
@@ -96,7 +96,7 @@ impl Answer {
             return;
         }
         let mine = self.at(i);
-        self.set(i, AnswerAt::NONE);
+        self.set(i, ForceAt::NONE);
         self.add(i, &mine, own);
         self.add(i, &other.at(i), share);
     }
@@ -110,7 +110,7 @@ impl Answer {
     }
 
     /// Replaces the answer at a sample.
-    pub fn set(&mut self, i: usize, answer: AnswerAt) {
+    pub fn set(&mut self, i: usize, answer: ForceAt) {
         self.is_empty = false;
         (self.force_n[i], self.push_per_n[i], self.cap_n[i]) =
             (answer.force_n, answer.push_per_n, answer.cap_n);

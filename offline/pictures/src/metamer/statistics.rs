@@ -2,7 +2,7 @@
 
 use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
-use super::level::{Gait, Level, Sought, Task, add, on_grid};
+use super::level::{Level, Schedule, Sought, Task, add, on_grid};
 use super::spectrum::with_amplitudes;
 use super::terraces::{ground_under, heights_of_terraces};
 use super::{Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, check_finite};
@@ -14,7 +14,7 @@ use asperity_surface::wrap::Wrap;
 
 /// A reference on the texels of originals of one size: its sub-bands, heights and envelope.
 #[derive(Debug, Clone)]
-pub struct Feel {
+pub struct Statistics {
     pub(super) options: MetamerOptions,
     /// The part that tiles, and the steps at the borders.
     pub(super) reference: SplitBorders,
@@ -23,11 +23,11 @@ pub struct Feel {
     /// The reference, if it is terraces.
     pub(super) terraces: Option<Raster>,
     /// The ground under them, once it is asked for.
-    pub(super) ground: Option<Box<Feel>>,
+    pub(super) ground: Option<Box<Statistics>>,
     pub(super) scratch: Scratch,
 }
 
-impl Feel {
+impl Statistics {
     /// Analyses `reference` for originals of `width` × `height`.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ impl Feel {
             Method::SinglePass => self.single_pass(&ours.periodic)?,
             Method::Spectrum => with_amplitudes(&ours.periodic, &self.reference.periodic),
             Method::Iterated(asked) => {
-                let task = Task { passes: asked, parts: self.parts(seam.as_ref()), gait: Gait::Plain };
+                let task = Task { passes: asked, parts: self.parts(seam.as_ref()), gait: Schedule::Plain };
                 let sought = Sought { original: &ours.periodic, seam: seam.as_ref(), task };
                 let made = self.iterate(sought, &mut progress)?;
                 (passes, borrowed) = (made.passes, made.borrowed);
@@ -126,7 +126,7 @@ impl Feel {
         })
     }
 
-    /// Feel of the ground under the reference, if that is terraces; it is to be put back.
+    /// Statistics of the ground under the reference, if that is terraces; it is to be put back.
     pub(super) fn take_ground(&mut self) -> Result<Option<Box<Self>>, DesignError> {
         if self.ground.is_some() {
             return Ok(self.ground.take());
@@ -233,7 +233,7 @@ mod tests {
         let mut rng = Rng::new(17);
         let mut noise = |gain: f64| Raster::from_fn(272, 260, |x, _| (x % 9) as f64 + gain * rng.normal());
         let (reference, image) = (noise(0.5), noise(3.0));
-        let mut feel = Feel::new(&reference, 272, 260, &MetamerOptions::default()).unwrap();
+        let mut feel = Statistics::new(&reference, 272, 260, &MetamerOptions::default()).unwrap();
         let (trial, result) = (feel.mean_of(&image), feel.distance(&image, true).mean);
         assert!(trial > 0.1 && (trial - result).abs() < 1e-12, "{trial} {result}");
     }
