@@ -34,7 +34,7 @@ fn main() -> AppExit {
 
 fn level(mut commands: Commands) {
     let body = Body::stock(Stock::Plate, Material::CERAMIC, 0.4).expect("0.4 m is a plate's size");
-    let top = Surface::flat(0.4, 0.4).expect("0.4 m is a surface's size").of(Material::CERAMIC);
+    let top = Surface::flat(0.4, 0.4).expect("0.4 m is a surface's size").material(Material::CERAMIC);
     let plate = commands.spawn((TouchBody(body), TouchSurface::new(top))).id();
     let finger = commands.spawn(TouchProbe::felt_by(0)).id();
     commands.insert_resource(Things { plate, finger });

@@ -134,7 +134,7 @@ impl Touch {
             );
         }
         if let Some(body) = body {
-            is = is.on(body);
+            is = is.body(body);
         }
         if let Some(id) = self.surface(entity) {
             if let Err(error) = self.scene().replace_surface(id, is) {

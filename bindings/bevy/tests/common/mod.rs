@@ -22,7 +22,7 @@ pub fn body() -> Body {
 
 /// Its top, not on any body yet.
 pub fn top() -> Surface {
-    Surface::flat(0.4, 0.4).unwrap().of(Material::CERAMIC).wraps(false)
+    Surface::flat(0.4, 0.4).unwrap().material(Material::CERAMIC).wraps(false)
 }
 
 pub fn app() -> App {
@@ -79,7 +79,7 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
     for i in 0..plates {
         let body = scene.add_body(body()).unwrap();
         own.bodies.insert(format!("body {i}"), body);
-        own.surfaces.insert(format!("surface {i}"), scene.add_surface(top().on(body)).unwrap());
+        own.surfaces.insert(format!("surface {i}"), scene.add_surface(top().body(body)).unwrap());
     }
     offline::render(scene, renderer, &log, &own, &Options { tail_s: 3.0, ..Options::default() }).unwrap()
 }

@@ -31,7 +31,7 @@ impl World {
         let mut physics = PhysicsWorld::default();
         physics.integration_parameters.contact_recycling = false;
         let slab = scene.add_body(Body::stock(Stock::Plate, Material::STONE, 0.5).unwrap()).unwrap();
-        let top = Surface::flat(4.0, 4.0).unwrap().of(Material::STONE).on(slab).wraps(false);
+        let top = Surface::flat(4.0, 4.0).unwrap().material(Material::STONE).body(slab).wraps(false);
         let top = scene.add_surface(top).unwrap();
         let floor = ColliderBuilder::cuboid(2.0, 0.5, 2.0).translation(Vector::new(0.0, -0.5, 0.0));
         let (_, floor) = physics.insert(RigidBodyBuilder::fixed(), floor);

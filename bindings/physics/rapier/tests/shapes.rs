@@ -34,7 +34,7 @@ impl World {
         let mut physics = PhysicsWorld::default();
         physics.integration_parameters.contact_recycling = false;
         let slab = scene.add_body(Body::stock(Stock::Plate, Material::STONE, 0.5).unwrap()).unwrap();
-        let top = Surface::flat(1.0, 1.0).unwrap().of(Material::STONE).on(slab);
+        let top = Surface::flat(1.0, 1.0).unwrap().material(Material::STONE).body(slab);
         let top = scene.add_surface(top).unwrap();
         let floor = ColliderBuilder::cuboid(20.0, 20.0, 20.0).translation(Vector::new(0.0, -20.0, 0.0));
         let (_, floor) = physics.insert(RigidBodyBuilder::fixed(), floor);
@@ -405,7 +405,7 @@ fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_han
         };
         let by_hand = scene.add_body(shaped_plate()).unwrap();
         let impact = Impact { body: by_hand, at_m: None, direction: None, ..told[0] };
-        let impact = impact.at([f64::from(x), 0.01, f64::from(z)]);
+        let impact = impact.at_m([f64::from(x), 0.01, f64::from(z)]);
         scene.report(0.0, ContactEvent::Impact(impact)).unwrap();
         let mut audio = vec![0.0; 28_800];
         renderer.render(&mut [&mut vec![0.0; audio.len()]], &mut [&mut audio]);
