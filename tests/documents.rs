@@ -24,8 +24,13 @@ const CRATES: [&str; 9] = [
 fn documents() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         ["README.md", "CONTRIBUTING.md", "examples/README.md"].map(|f| root().join(f)).into();
-    let folders =
-        CRATES.iter().chain(&["docs", "offline/fft", "bindings/physics/pairs", "bindings/physics/rapier"]);
+    let folders = CRATES.iter().chain(&[
+        "docs",
+        "docs/lab",
+        "offline/fft",
+        "bindings/physics/pairs",
+        "bindings/physics/rapier",
+    ]);
     for folder in folders.filter(|folder| !folder.is_empty()) {
         let files = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
         found.extend(files.filter(|path| path.extension().is_some_and(|ending| ending == "md")));
@@ -55,7 +60,7 @@ fn every_link_between_the_documents_leads_to_a_file() {
 
 #[test]
 fn every_test_bench_and_example_that_the_figures_name_exists() {
-    let text = fs::read_to_string(root().join("docs/figures.md")).unwrap();
+    let text = fs::read_to_string(root().join("docs/lab/figures.md")).unwrap();
     let crates = CRATES.iter().chain(&["offline/evidence"]);
     let exists = |folder: &str, name: &str| {
         let place = |within: &str| root().join(within).join(folder).join(name);
@@ -66,7 +71,7 @@ fn every_test_bench_and_example_that_the_figures_name_exists() {
     for (option, folder) in [("--test ", "tests"), ("--bench ", "benches"), ("--example ", "examples")] {
         for rest in text.split(option).skip(1) {
             let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            assert!(exists(folder, &name), "docs/figures.md: {option}{name} does not exist");
+            assert!(exists(folder, &name), "docs/lab/figures.md: {option}{name} does not exist");
             named += 1;
         }
     }
@@ -75,7 +80,7 @@ fn every_test_bench_and_example_that_the_figures_name_exists() {
         let name: String = reversed.collect::<Vec<_>>().into_iter().rev().collect();
         // The head of the page explains the pattern itself.
         if name != "NAME" && !name.is_empty() {
-            assert!(exists("tests", &name), "docs/figures.md: {name}:: does not exist");
+            assert!(exists("tests", &name), "docs/lab/figures.md: {name}:: does not exist");
             named += 1;
         }
     }

@@ -85,7 +85,7 @@ fn no_stroke_passes_full_scale_and_the_limiter_takes_6_db_off_one_in_twenty_at_m
         }
     }
     println!("below threshold: {below:#?}");
-    assert!(below.is_empty(), "docs/feel.md says that there is none");
+    assert!(below.is_empty(), "docs/lab/feel.md says that there is none");
     println!("{seldom} of {cells} strokes lose {SELDOM_MORE_DB} dB or less");
     assert!(20 * seldom >= 19 * cells);
 }

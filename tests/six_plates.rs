@@ -4,7 +4,7 @@
 //! A trial is one free exploration: a stroke along u and one along v at random places, speeds and
 //! forces, on a plate whose micro-relief has a seed of its own. The observer learns each plate from
 //! other seeds, places, speeds and forces than those it is asked about, and knows where the hand
-//! is, as the study's participants did. What it says is printed and stands in `docs/feel.md`,
+//! is, as the study's participants did. What it says is printed and stands in `docs/lab/feel.md`,
 //! whatever it is; held to are the controls: shuffled labels and a plate against itself at chance,
 //! and the figures of people as far as they are reached.
 

@@ -40,7 +40,7 @@ pub const DEFAULT_ROUGHNESS: f64 = 0.5;
 /// Rms height of the micro-noise in the octave around 1 mm wavelength where R is 1, m. **Measured
 /// here**: at R = 0.5 that is 9 µm, and from 8 µm on the micro-collisions of a fingertip carry the
 /// sound of rough strokes; a tool of 30 g is then shaken by 1–2 m/s² at 120 mm/s and R = 0.5, as
-/// published recordings of real materials are (`docs/feel.md`).
+/// published recordings of real materials are (`docs/lab/feel.md`).
 pub const DEFAULT_MICRO_RELIEF_M: f64 = 22e-6;
 /// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface
 /// has. **Chosen** within the millimetres to centimetres of machined and polished ones.

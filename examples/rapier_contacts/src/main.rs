@@ -100,7 +100,8 @@ fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names, Adapter), Box<dyn
     for (name, shape, size_m, material) in BODIES {
         names.bodies.insert(name.to_owned(), scene.add_body(Body::stock(shape, material, size_m)?)?);
     }
-    let slab = Surface::flat(SIDE_M, SIDE_M)?.material(Material::CERAMIC).body(names.bodies["slab"]).wraps(false);
+    let slab =
+        Surface::flat(SIDE_M, SIDE_M)?.material(Material::CERAMIC).body(names.bodies["slab"]).wraps(false);
     names.surfaces.insert("slab".to_owned(), scene.add_surface(slab)?);
     let adapter = Adapter::new(&mut scene)?;
     names.probes.insert("rigid".to_owned(), adapter.rigid_probe());
