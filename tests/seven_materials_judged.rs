@@ -2,8 +2,8 @@
 //! with people's noise.
 //!
 //! People named 95 of 112 (0.848); gravel and pebbles best, wood and granite least. What the
-//! observer says is printed and stands in `docs/lab/feel.md`, whatever it is; held to is the control:
-//! shuffled labels at chance.
+//! observer says is printed and stands in `docs/lab/feel.md`, whatever it is; held to is the
+//! control: shuffled labels at chance.
 
 use crate::common;
 

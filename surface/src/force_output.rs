@@ -1,4 +1,5 @@
-//! ForceOutput: the force with which a surface answers a tool, beside carrying it and rubbing on it.
+//! ForceOutput: the force with which a surface answers a tool, beside carrying it and rubbing on
+//! it.
 //!
 //! ```text
 //! F_xy = a_xy + F_c (p − ∇h) − μ F_c v / |v|        F_z = a_z + F_c        |F| ≤ cap

@@ -16,7 +16,7 @@ use toml::{Table, Value};
 
 /// Most modes of a body.
 const MAX_MODES: usize = 65_536;
-/// Where modes lie that a program has in memory.
+/// Name of modes that a program has in memory.
 const MODES: &str = "asp_body.modes.json";
 
 /// A mode: amplitude · e^(−decay_per_s · t) · sin(2π · frequency_hz · t + phase_rad).
@@ -27,7 +27,7 @@ pub struct asp_mode {
     pub frequency_hz: f64,
     /// Decay, 1/s.
     pub decay_per_s: f64,
-    /// What the impulse of the body's modes is answered with.
+    /// Amplitude after the impulse that the body's modes are given for.
     pub amplitude: f64,
     /// Phase at the onset, rad.
     pub phase_rad: f64,
@@ -40,15 +40,15 @@ pub struct asp_mode {
 pub struct asp_body {
     /// Size of this struct, bytes.
     pub struct_size: u32,
-    /// What it is made of: ASP_MATERIAL_…
+    /// Material: ASP_MATERIAL_…
     pub material: u32,
     /// Audio bus on which it sounds, from 0.
     pub bus: u32,
-    /// How many `modes` there are.
+    /// Number of `modes`.
     pub mode_count: u32,
     /// Gain, linear, 0 to 1000.
     pub gain: f64,
-    /// What `asp_find`, logs and recordings call it; NULL = nothing.
+    /// Name in `asp_find`, logs and recordings; NULL = none.
     pub name: *const c_char,
     /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can",
     /// "bottle", "pan", "barrel" or "door".
@@ -64,9 +64,9 @@ pub struct asp_body {
     /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, …; the
     /// fields above count more.
     pub table: *const c_char,
-    /// Where files lie that `table` names; NULL = the disk.
+    /// Place of the files that `table` names; NULL = the disk.
     pub files: *const asp_files,
-    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
+    /// Gain of impacts relative to strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
     /// `table` says, else as the level policy has found for the bodies of a scene file, else 1.
     /// (Since 0.1.1.)
     pub strike_gain: f64,
@@ -89,7 +89,7 @@ sized!(asp_body, "asp_body", [offset_of!(asp_body, strike_gain)], |struct_size| 
     strike_gain: f64::NAN,
 });
 
-/// What the engine refused to add, as a status.
+/// Status of a refusal to add.
 pub(crate) fn refused(error: &AddError) -> Failure {
     use crate::status::{ASP_FULL, ASP_UNKNOWN};
     let status = match error {
@@ -174,7 +174,7 @@ pub unsafe extern "C" fn asp_init_body(body: *mut asp_body, size: u32) {
     sized::init_as(body, size);
 }
 
-/// The same of programs that were compiled with 0.1.0, whose body is shorter.
+/// Fills the shorter body of programs that were compiled with 0.1.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_body_init(body: *mut asp_body) {
     sized::init_as(body, <asp_body as sized::Sized32>::SHIPPED[0]);

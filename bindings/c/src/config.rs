@@ -18,7 +18,7 @@ pub const ASP_CLOCK_MORE: u32 = 2;
 
 /// The fastest instruction set of this processor.
 pub const ASP_KERNEL_BEST: u32 = 0;
-/// The same bits on every processor.
+/// Kernel with equal bits on every processor.
 pub const ASP_KERNEL_PORTABLE: u32 = 1;
 
 /// Longest stretch rendered at once, frames; longer calls are split, which does not change a bit.
@@ -28,7 +28,7 @@ pub const ASP_MAX_CHANNELS: u32 = 64;
 /// Most audio buses of an engine.
 pub const ASP_MAX_BUSES: u32 = 64;
 
-/// How an engine is built; `asp_config_init` fills it.
+/// Settings of a new engine; `asp_config_init` fills it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_config {

@@ -57,7 +57,7 @@ pub(crate) fn array<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
 
-/// The same for what is written to.
+/// Array that is written to, checked alike.
 pub(crate) fn array_mut<'a, T>(
     first: *mut T,
     count: usize,

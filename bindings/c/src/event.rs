@@ -77,7 +77,7 @@ pub struct asp_event {
     pub radius_m: f64,
     /// impact: rebound over approach speed, 0 to 1.
     pub restitution: f64,
-    /// Of a striker of ASP_MATERIAL_CUSTOM: Young's modulus, Pa.
+    /// Young's modulus of a striker of ASP_MATERIAL_CUSTOM, Pa.
     pub striker_young_pa: f64,
     /// Its Poisson ratio.
     pub striker_poisson: f64,
@@ -287,7 +287,7 @@ pub unsafe extern "C" fn asp_init_event(event: *mut asp_event, size: u32) {
     sized::init_as(event, size);
 }
 
-/// The same of programs that were compiled with 0.1.0, whose event is shorter.
+/// Fills the shorter event of programs that were compiled with 0.1.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_event_init(event: *mut asp_event) {
     sized::init_as(event, <asp_event as sized::Sized32>::SHIPPED[0]);

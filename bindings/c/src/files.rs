@@ -15,7 +15,7 @@ use std::path::Path;
 /// Most bytes of a file.
 const MAX_BYTES: usize = 1 << 30;
 
-/// Where a program puts what it was asked for: valid within that one call of its function.
+/// Receiver of a file's bytes: valid within that one call of its function.
 pub struct asp_sink {
     bytes: Option<Vec<u8>>,
     picture: Option<Picture>,
@@ -27,7 +27,7 @@ pub struct asp_sink {
 pub type asp_read =
     Option<unsafe extern "C" fn(user: *mut c_void, path: *const c_char, sink: *mut asp_sink) -> i32>;
 
-/// Where files lie; `asp_files_init` fills it. NULL wherever it is asked for means the disk.
+/// Source of files; `asp_files_init` fills it. NULL wherever it is asked for means the disk.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_files {

@@ -21,13 +21,13 @@ pub(crate) const PLACES: usize = 1024;
 const KIND_BITS: u32 = 3;
 const PLACE_BITS: u32 = 10;
 const PHASE_BITS: u32 = 2;
-/// As many as fit into a pointer of 32 bits.
+/// Bits of a generation: as many as fit into a pointer of 32 bits.
 const GENERATION_BITS: u32 = 19;
 const GENERATIONS: u64 = 1 << GENERATION_BITS;
-/// How long freeing waits for another thread to come out of its call.
+/// Time for which freeing waits for another thread to come out of its call.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What a place is at: the lowest bits of its word; the others are its generation.
+/// Phase of a place: the lowest bits of its word; the others are its generation.
 mod phase {
     pub(super) const FREE: u64 = 0;
     pub(super) const IDLE: u64 = 1;
@@ -48,7 +48,7 @@ pub(crate) struct Table<T> {
     kind: usize,
     name: &'static str,
     slots: [Slot<T>; PLACES],
-    /// Where a free place is looked for first, so that places are used in turn.
+    /// First place where a free one is looked for, so that places are used in turn.
     next: AtomicUsize,
 }
 
@@ -128,7 +128,7 @@ impl<T: Send> Table<T> {
         self.begin(index, generation)
     }
 
-    /// The same by place: whatever is there now.
+    /// Holds whatever is at a place now.
     pub(crate) fn hold_at(&self, index: usize) -> Option<Held<'_, T>> {
         let generation = self.slots.get(index)?.word.load(Relaxed) >> PHASE_BITS;
         self.begin(index, generation).ok()

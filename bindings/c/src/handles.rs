@@ -34,13 +34,13 @@ pub struct asp_tip {
     _private: [u8; 0],
 }
 
-/// What a scene's handle names.
+/// Scene behind a handle.
 pub(crate) struct SceneHalf {
     pub(crate) scene: Scene,
     pub(crate) names: Names,
     /// Sand that is simulated on threads of its own; they end with the scene.
     pub(crate) sand: Vec<SandThread>,
-    /// Whether sand that is added later is simulated so.
+    /// True where sand that is added later is simulated on its own thread.
     pub(crate) live: bool,
 }
 
@@ -52,7 +52,7 @@ impl Drop for SceneHalf {
     }
 }
 
-/// What a renderer's handle names: a renderer, and memory for one stretch of every signal.
+/// Renderer behind a handle, and memory for one stretch of every signal.
 pub(crate) struct AudioHalf {
     /// Away only while it changes its rate.
     pub(crate) renderer: Option<Renderer>,
@@ -63,7 +63,7 @@ pub(crate) struct AudioHalf {
     pub(crate) tick: Option<u64>,
 }
 
-/// What a port's handle names.
+/// Port behind a handle.
 #[expect(clippy::large_enum_variant, reason = "the table boxes it whole")]
 pub(crate) enum AnyPort {
     Pcm(PcmPort),

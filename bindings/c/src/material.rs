@@ -64,7 +64,7 @@ pub const ASP_MATERIAL_CORK: u32 = 26;
 /// Moist soil.
 pub const ASP_MATERIAL_SOIL: u32 = 27;
 
-/// What scene files call them.
+/// Names in scene files.
 const NAMES: [(u32, &str); 27] = [
     (ASP_MATERIAL_STEEL, "steel"),
     (ASP_MATERIAL_IRON, "iron"),

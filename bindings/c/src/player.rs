@@ -11,7 +11,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::NullSink;
 use std::ffi::c_char;
 
-/// How it is played; `asp_player_config_init` fills it for the default device.
+/// Settings of a player; `asp_player_config_init` fills it for the default device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_player_config {
@@ -29,7 +29,7 @@ pub struct asp_player_config {
     pub device: *const c_char,
     /// A second device for the haptic channels; NULL = none.
     pub haptic_device: *const c_char,
-    /// What its channels carry, for instance "audio=0,1 haptic=2,3"; NULL = just that.
+    /// Signals of its channels, for instance "audio=0,1 haptic=2,3"; NULL = just that.
     pub channels: *const c_char,
 }
 
@@ -44,7 +44,7 @@ sized!(asp_player_config, "asp_player_config", |struct_size| Self {
     channels: std::ptr::null(),
 });
 
-/// What a player met; `asp_player_report_init` fills in the size.
+/// Report of a player; `asp_player_report_init` fills in the size.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_player_report {
@@ -127,7 +127,7 @@ fn on_device(renderer: Renderer, wanted: Wanted<'_>) -> Result<Playing, Failure>
     play_on(renderer, &options).map(Playing::Device).map_err(|error| Failure::new(ASP_DEVICE, error))
 }
 
-/// Whether this build has sound cards.
+/// Refuses where this build has no sound cards.
 fn has_devices(wanted: &Wanted<'_>) -> Result<(), Failure> {
     if cfg!(feature = "device") {
         return Ok(());
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn asp_player_device(player: *mut asp_player, words: *mut 
     })
 }
 
-/// What the player met so far; one that plays to nobody tells it only when it is stopped.
+/// Report of the player so far; one that plays to nobody tells it only when it is stopped.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_get_player_report(
     player: *mut asp_player,

@@ -1,9 +1,9 @@
-//! What a player's handle names.
+//! Player behind a handle.
 
 use crate::status::{ASP_REFUSED, Failure};
 use asperity::live::null_sink::NullSink;
 
-/// What a player's handle names.
+/// Player behind a handle.
 pub(crate) struct Player {
     playing: Playing,
     /// The process that has its thread.
@@ -19,7 +19,7 @@ impl Player {
         &self.playing
     }
 
-    /// What is to be stopped; in a child of fork there is no thread that would end.
+    /// Takes out what is to be stopped; in a child of fork there is no thread that would end.
     pub(crate) fn into_playing(self) -> Result<Playing, Failure> {
         if self.process == std::process::id() {
             return Ok(self.playing);
@@ -35,6 +35,6 @@ pub(crate) enum Playing {
     /// A sound card; without the feature there is none.
     #[cfg(feature = "device")]
     Device(asperity::live::device::Player),
-    /// Nobody.
+    /// No device: the paced null sink.
     Silent { sink: NullSink, block_frames: usize, rate_hz: f64 },
 }

@@ -13,7 +13,7 @@ use asperity::{ChannelId, ContactId};
 pub const ASP_PORT_PCM: u32 = 1;
 /// An amplitude and a frequency some hundred times a second: read with `asp_port_points`.
 pub const ASP_PORT_POINTS: u32 = 2;
-/// How hard a heavy and a light motor turn: read with `asp_port_levels`.
+/// Levels of a heavy and a light motor: read with `asp_port_levels`.
 pub const ASP_PORT_LEVELS: u32 = 3;
 /// The 3-D force of contacts and hands: read with `asp_port_forces`.
 pub const ASP_PORT_FORCES: u32 = 4;
@@ -23,7 +23,7 @@ pub const ASP_FEED_HAPTIC: u32 = 0;
 /// An audio bus.
 pub const ASP_FEED_BUS: u32 = 1;
 
-/// What is wanted of a port; `asp_port_config_init` fills it for 0.1 s of haptic channel 0.
+/// Settings of a port; `asp_port_config_init` fills it for 0.1 s of haptic channel 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct asp_port_config {
@@ -37,13 +37,13 @@ pub struct asp_port_config {
     pub index: u32,
     /// Points, levels or forces a second, Hz.
     pub rate_hz: f64,
-    /// How much a late reader still finds, s, 0.001 to 60.
+    /// Time that a late reader still finds, s, 0.001 to 60.
     pub holds_s: f64,
-    /// Of points: the lowest frequency that the device plays, Hz.
+    /// Lowest frequency of points that the device plays, Hz.
     pub low_hz: f64,
     /// The highest.
     pub high_hz: f64,
-    /// Of points: 0 = the frequency is drawn, so that every band has its share; 1 = the strongest.
+    /// Frequency of points: 0 = it is drawn, so that every band has its share; 1 = the strongest.
     pub strongest: u32,
     /// 0.
     pub reserved: u32,
@@ -238,7 +238,7 @@ pub unsafe extern "C" fn asp_port_forces(port: *mut asp_port, forces: *mut asp_f
     })
 }
 
-/// How much was overwritten before it was read: samples, points, levels or forces.
+/// Number that was overwritten before it was read: samples, points, levels or forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_port_lost(port: *mut asp_port) -> u64 {
     reading(port, |port| match port {

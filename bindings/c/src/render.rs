@@ -36,7 +36,7 @@ impl AudioHalf {
         }
     }
 
-    /// Where a map's channel comes from.
+    /// Signal of a map's channel.
     fn signal(&self, number: i32) -> Option<&[f32]> {
         let number = usize::try_from(number).ok()?;
         match number.checked_sub(ASP_HAPTIC as usize) {

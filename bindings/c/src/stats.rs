@@ -57,7 +57,7 @@ pub struct asp_stats {
     pub clock_jumps: u64,
     /// Times the game was found to run at another pace.
     pub clock_paces: u64,
-    /// How far ahead of the audio the latest event was stamped, samples.
+    /// Lead of the latest event's stamp over the audio, samples.
     pub ahead: u64,
     /// Pieces of work left out because blocks ran late.
     pub shed: u64,
@@ -165,13 +165,13 @@ pub unsafe extern "C" fn asp_init_stats(stats: *mut asp_stats, size: u32) {
     sized::init_as(stats, size);
 }
 
-/// The same of programs that were compiled with 0.1.0, whose statistics are shorter.
+/// Fills the shorter statistics of programs that were compiled with 0.1.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_stats_init(stats: *mut asp_stats) {
     sized::init_as(stats, <asp_stats as sized::Sized32>::SHIPPED[0]);
 }
 
-/// What the engine did so far.
+/// Statistics of the engine so far.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_get_stats(scene: *mut asp_scene, stats: *mut asp_stats) -> i32 {
     enter(|| sized::write(&asp_stats::of(&SCENES.hold(scene as usize)?.scene.stats()), stats, "stats"))

@@ -45,11 +45,11 @@ pub struct asp_surface {
     pub wrap: u32,
     /// The body that rings when it is touched; 0 = none, or the one that `table` names.
     pub body: u64,
-    /// What `asp_find`, logs and recordings call it; NULL = nothing.
+    /// Name in `asp_find`, logs and recordings; NULL = none.
     pub name: *const c_char,
-    /// What uv 0 to 1 spans along u, m.
+    /// Span of uv 0 to 1 along u, m.
     pub width_m: f64,
-    /// What uv 0 to 1 spans along v, m.
+    /// Span of uv 0 to 1 along v, m.
     pub height_m: f64,
     /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are
     /// metres.
@@ -68,12 +68,12 @@ pub struct asp_surface {
     pub micro_relief_m: f64,
     /// Coulomb friction of the force.
     pub friction: f64,
-    /// How far it gives way, m/N; 0 = hard.
+    /// Compliance, m/N; 0 = hard.
     pub compliance_m_n: f64,
     /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { … }, files of maps,
     /// …; the fields above count more.
     pub table: *const c_char,
-    /// Where files lie that `table` names; NULL = the disk.
+    /// Place of the files that `table` names; NULL = the disk.
     pub files: *const asp_files,
 }
 

@@ -29,7 +29,7 @@ const IS_MUTED: u32 = 4;
 /// The one parameter: which engine, 0 = none.
 const ENGINE: c_int = 0;
 
-/// What the mixer tells an effect.
+/// State that the mixer hands to an effect.
 #[repr(C)]
 pub struct UnityAudioEffectState {
     structsize: u32,
@@ -104,7 +104,7 @@ struct Effect {
     engine: AtomicU32,
 }
 
-/// What a state belongs to; none before `create` and after `release`.
+/// Effect of a state; none before `create` and after `release`.
 unsafe fn effect<'a>(state: *mut UnityAudioEffectState) -> Option<&'a Effect> {
     if state.is_null() || !state.is_aligned() {
         return None;
@@ -258,7 +258,7 @@ const fn field<const N: usize>(text: &[u8]) -> [u8; N] {
     field
 }
 
-/// What the mixer is given, for as long as the program runs.
+/// Definitions for the mixer, for as long as the program runs.
 struct Definitions {
     list: [*const UnityAudioEffectDefinition; 1],
     effect: UnityAudioEffectDefinition,
@@ -309,7 +309,7 @@ fn definitions() -> &'static Definitions {
     })
 }
 
-/// What Unity calls when it loads the library: one effect, "Asperity".
+/// Entry point that Unity calls when it loads the library: one effect, "Asperity".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn UnityGetAudioEffectDefinitions(
     definitions: *mut *const *const UnityAudioEffectDefinition,

@@ -18,7 +18,7 @@ use std::mem::size_of;
 /// `asp_check_abi`.
 pub const ASP_ABI: u32 = 1;
 
-/// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
+/// Number of structs in the header, in the order in which `asp_check_abi` takes their sizes.
 pub const ASP_STRUCTS: u32 = 13;
 
 /// Name and sizes of a struct that begins with its size: all that it ever had.

@@ -32,7 +32,7 @@ pub struct AsperityBody {
     #[export]
     #[init(val = 1.0)]
     gain: f64,
-    /// How loud blows are beside strokes, linear, 0 to 1000; 1: as mechanics says. Below 0: as
+    /// Gain of blows relative to strokes, linear, 0 to 1000; 1: as mechanics says. Below 0: as
     /// `table` says, or as the world's scene file has it.
     #[export]
     #[init(val = -1.0)]
@@ -47,7 +47,7 @@ pub struct AsperityBody {
     /// Further keys of a scene file's [[body]], TOML. The fields above count more.
     #[export(multiline)]
     table: GString,
-    /// What is touched; none: it can only be struck.
+    /// Surface that is touched; none: it can only be struck.
     #[export]
     surface: Option<Gd<AsperitySurface>>,
     world: Option<Gd<AsperityWorld>>,
@@ -98,12 +98,12 @@ impl AsperityBody {
         self.world.as_ref().is_some_and(Gd::is_instance_valid)
     }
 
-    /// Where a mesh's uv lies on the maps of its surface.
+    /// Place of a mesh's uv on the maps of its surface.
     pub(crate) fn on_maps(&self, uv: Vector2) -> Vector2 {
         self.surface.as_ref().map_or(uv, |surface| surface.bind().on_maps(uv))
     }
 
-    /// Where a place in metres lies on the maps of its surface.
+    /// Place in metres as one on the maps of its surface.
     pub(crate) fn in_spans(&self, place_m: Vector2) -> Vector2 {
         self.surface.as_ref().map_or(place_m, |surface| surface.bind().in_spans(place_m))
     }
@@ -118,7 +118,7 @@ impl AsperityBody {
         self.join_in(&mut world.bind_mut(), id);
     }
 
-    /// Whether the world of that instance is the one to join, once it is built.
+    /// Tests whether the world of that instance is the one to join, once it is built.
     pub(crate) fn waits_for(&self, world: InstanceId) -> bool {
         self.world.as_ref().is_none_or(|mine| !mine.is_instance_valid() || mine.instance_id() == world)
     }

@@ -1,9 +1,9 @@
 //! Events: numbers of a script as events of the engine.
 
-use asperity::{ChannelId, BodyId, ContactSample, Impact, Material, SurfaceId, Touching};
+use asperity::{BodyId, ChannelId, ContactSample, Impact, Material, SurfaceId, Touching};
 use godot::prelude::*;
 
-/// What a script calls a contact, as the engine's number.
+/// Number of a contact, from a script's to the engine's.
 pub(crate) fn contact(number: i64) -> Result<asperity::ContactId, String> {
     u64::try_from(number)
         .map(asperity::ContactId)
@@ -19,12 +19,12 @@ pub(crate) fn channel(number: i64) -> Result<Option<ChannelId>, String> {
     }
 }
 
-/// What a script leaves out.
+/// Number that a script leaves out.
 pub(crate) const NOT_TOLD: f64 = f64::NAN;
 
 /// A place or a velocity that a script leaves out.
 pub(crate) const NO_PLACE: Vector3 = Vector3::new(f32::NAN, f32::NAN, f32::NAN);
-/// The same along u and v.
+/// Velocity that a script leaves out.
 pub(crate) const NO_VELOCITY: Vector2 = Vector2::new(f32::NAN, f32::NAN);
 
 /// A velocity, where it is told.
@@ -32,7 +32,7 @@ pub(crate) fn velocity(told: Vector2) -> Option<Vector2> {
     Some(told).filter(|v| !(v.x.is_nan() && v.y.is_nan()))
 }
 
-/// How much of a contact's motion is slip, m/s, and the radius of what rolls, m; not told: it is a
+/// Slip of a contact, m/s, and the radius of what rolls, m; not told: it is a
 /// stroke, with the probe's tip.
 #[derive(Clone, Copy)]
 pub(crate) struct Rolling {
@@ -64,7 +64,7 @@ pub(crate) fn sample(
     }
 }
 
-/// What touches what.
+/// Touch of a surface by a channel.
 pub(crate) fn touching(surface: i64, number: i64) -> Result<Touching, String> {
     let mut touching = Touching::on(SurfaceId::from_bits(surface as u64));
     touching.actuator = channel(number)?;

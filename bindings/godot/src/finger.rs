@@ -13,11 +13,11 @@ use godot::prelude::*;
 #[derive(GodotClass)]
 #[class(init, base = Node3D)]
 pub struct AsperityFinger3D {
-    /// How far the ray goes, m.
+    /// Length of the ray, m.
     #[export]
     #[init(val = 0.1)]
     reach_m: f64,
-    /// How hard it presses, N.
+    /// Pressing force, N.
     #[export]
     #[init(val = 0.5)]
     force_n: f64,
@@ -28,7 +28,7 @@ pub struct AsperityFinger3D {
     #[export(flags_3d_physics)]
     #[init(val = 1)]
     collision_mask: u32,
-    /// Whether it touches at all: false lifts it.
+    /// True where it touches: false lifts it.
     #[export]
     #[init(val = true)]
     pressing: bool,
@@ -37,7 +37,7 @@ pub struct AsperityFinger3D {
     world: Option<Gd<AsperityWorld>>,
     /// Which of the world's engines it touches in.
     build: u64,
-    /// Where it was in the space of what it touched a tick ago, m.
+    /// Place a tick ago in the space of what it touched, m.
     last: Option<(i64, Vector3)>,
     /// The side that it is on of what has no texture coordinates.
     side: Option<usize>,
@@ -67,7 +67,7 @@ impl INode3D for AsperityFinger3D {
 
 #[godot_api]
 impl AsperityFinger3D {
-    /// Whether it touches something.
+    /// Tests whether it touches something.
     #[func]
     fn is_touching(&self) -> bool {
         self.touched != 0

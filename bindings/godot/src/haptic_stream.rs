@@ -9,7 +9,7 @@ use godot::meta::conv::RawPtr;
 use godot::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// Where ports wait that nobody plays. The audio thread never looks here.
+/// Place of ports that are not played. The audio thread never looks here.
 pub(crate) type Ports = Arc<Mutex<Option<[Option<PcmPort>; 2]>>>;
 
 /// Two haptic channels of an `AsperityWorld`, left and right. `AsperityWorld.haptic_stream(left,
@@ -56,7 +56,7 @@ impl IAudioStream for AsperityHapticStream {
     }
 }
 
-/// What the audio server plays of an `AsperityHapticStream`. Scripts have no business with it.
+/// Playback of an `AsperityHapticStream` for the audio server. Scripts have no business with it.
 #[derive(GodotClass)]
 #[class(no_init, base = AudioStreamPlayback)]
 pub struct AsperityHapticPlayback {

@@ -8,7 +8,7 @@ use godot::meta::conv::RawPtr;
 use godot::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// Where a renderer waits that nobody plays. The audio thread never looks here.
+/// Place of a renderer that is not played. The audio thread never looks here.
 pub(crate) type Slot = Arc<Mutex<Option<Renderer>>>;
 
 /// The audio buses of an `AsperityWorld`: one bus sounds on both sides; of several the first is
@@ -46,7 +46,7 @@ impl IAudioStream for AsperityStream {
     }
 }
 
-/// What the audio server plays of an `AsperityStream`. Scripts have no business with it.
+/// Playback of an `AsperityStream` for the audio server. Scripts have no business with it.
 #[derive(GodotClass)]
 #[class(no_init, base = AudioStreamPlayback)]
 pub struct AsperityPlayback {

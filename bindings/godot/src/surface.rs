@@ -13,20 +13,20 @@ use toml::{Table, Value};
 #[derive(GodotClass)]
 #[class(init, base = Resource)]
 pub struct AsperitySurface {
-    /// What uv 0 to 1 spans along u, m.
+    /// Span of uv 0 to 1 along u, m.
     #[export]
     #[init(val = 1.0)]
     width_m: f64,
-    /// What uv 0 to 1 spans along v, m.
+    /// Span of uv 0 to 1 along v, m.
     #[export]
     #[init(val = 1.0)]
     height_m: f64,
-    /// How often the maps repeat within uv 0 to 1, as a material's `uv1_scale`: a finger's uv times
-    /// this is where it is on them.
+    /// Number of repetitions of the maps within uv 0 to 1, as a material's `uv1_scale`: a finger's
+    /// uv times this is where it is on them.
     #[export]
     #[init(val = Vector2::ONE)]
     uv_scale: Vector2,
-    /// Where uv 0 lies on the maps, as a material's `uv1_offset`.
+    /// Place of uv 0 on the maps, as a material's `uv1_offset`.
     #[export]
     uv_offset: Vector2,
     /// Heights: white is high.
@@ -112,18 +112,18 @@ impl AsperitySurface {
 }
 
 impl AsperitySurface {
-    /// What one repetition of the maps spans along u and v, m.
+    /// Spans of one repetition of the maps along u and v, m.
     fn spans_m(&self) -> [f64; 2] {
         let [u, v] = [self.uv_scale.x, self.uv_scale.y].map(|scale| f64::from(scale).abs());
         [self.width_m / u, self.height_m / v]
     }
 
-    /// Where a mesh's uv lies on the maps.
+    /// Place of a mesh's uv on the maps.
     pub(crate) fn on_maps(&self, uv: Vector2) -> Vector2 {
         uv * self.uv_scale + self.uv_offset
     }
 
-    /// Where a place in metres lies on the maps.
+    /// Place in metres as one on the maps.
     pub(crate) fn in_spans(&self, place_m: Vector2) -> Vector2 {
         let [u, v] = self.spans_m();
         Vector2::new(place_m.x / u as f32, place_m.y / v as f32)

@@ -11,7 +11,7 @@ pub(crate) struct Triangles {
 }
 
 impl Triangles {
-    /// Of all surfaces of a mesh; those without texture coordinates are left out.
+    /// Triangles of all surfaces of a mesh; those without texture coordinates are left out.
     pub(crate) fn of(mesh: &Gd<Mesh>) -> Self {
         let mut all = Vec::new();
         for surface in 0..mesh.get_surface_count() {
@@ -62,7 +62,7 @@ fn axes(corners: &[Vector3; 3], uv: &[Vector2; 3]) -> [Vector3; 2] {
     [(p * t.y - q * s.y) * sign, (q * s.x - p * t.x) * sign]
 }
 
-/// How much nearer another side has to be than the one that a finger is on.
+/// Factor by which another side has to be nearer than the one that a finger is on.
 const HOLD: f32 = 1.2;
 
 /// The axis that a normal is nearest to: 0, 1, 2 for x, y, z; the one before, until another is

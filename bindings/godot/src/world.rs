@@ -24,8 +24,8 @@ const GROUP: &str = "asperity_world";
 /// The group by which a world that is built finds the bodies that are in the tree already.
 pub(crate) const BODIES: &str = "asperity_bodies";
 
-/// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame,
-/// 133 ms at 60 Hz.
+/// Lead of a stamp over the audio, s, at most: Godot catches up with up to 8 physics ticks in one
+/// frame, 133 ms at 60 Hz.
 const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
 
 /// Gravity beyond which a project's unit is taken for the centimetre, m/s².
@@ -33,7 +33,7 @@ const ODD_GRAVITY_M_S2: f64 = 100.0;
 /// The project's gravity.
 const GRAVITY: &str = "physics/3d/default_gravity";
 
-/// How much of a haptic channel waits for its stream, s.
+/// Time of a haptic channel that waits for its stream, s.
 const HOLDS_S: f64 = 0.25;
 
 /// A scene that runs.
@@ -57,7 +57,7 @@ pub struct AsperityWorld {
     #[export]
     #[init(val = 2)]
     haptic_channels: i64,
-    /// What full scale of a haptic channel stands for, m, where no scene file says it; strokes move
+    /// Displacement at full scale of a haptic channel, m, where no scene file says it; strokes move
     /// a fingertip by hundredths of a millimetre to tenths, blows by millimetres, and a limiter
     /// keeps them within full scale.
     #[export]
@@ -86,7 +86,7 @@ pub struct AsperityWorld {
     stream: Option<Gd<AsperityStream>>,
     /// The players that it made for its buses.
     players: Vec<Gd<AudioStreamPlayer>>,
-    /// How often it was built: ids of before belong to no engine any more.
+    /// Number of builds: ids of before belong to no engine any more.
     builds: u64,
     latency_frames: usize,
     time_s: f64,
@@ -322,7 +322,7 @@ impl AsperityWorld {
         })
     }
 
-    /// What has happened so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how
+    /// Statistics so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how
     /// much limiters have turned down at most; `why_silent` says what speaks against anything being
     /// heard, `why_clipped` what is too loud and what to turn.
     #[func]
@@ -413,7 +413,7 @@ impl AsperityWorld {
         }
     }
 
-    /// How often it was built.
+    /// Number of builds.
     pub(crate) fn builds(&self) -> u64 {
         self.builds
     }

@@ -12,7 +12,7 @@ pub const MOST_CHANNELS: usize = 16;
 /// Numbers that a block shows of its contacts.
 pub const SCOPE_NUMBERS: usize = 16;
 
-/// What the first contact of a block does, as numbers in this order: how many contacts touch;
+/// State of the first contact of a block, as numbers in this order: how many contacts touch;
 /// lowest and highest ground under the finger, m; lowest and highest skin, m; place along u and v,
 /// m; velocity along u and v, m/s; force that presses, N; momentum sent to the body, N·s; its name.
 #[derive(Clone, Copy)]
@@ -100,13 +100,13 @@ pub extern "C" fn asp_render(frames: usize) -> usize {
     rendered
 }
 
-/// Where bus `index` of the last block lies; null where there is none.
+/// Address of bus `index` of the last block; null where there is none.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_audio(index: usize) -> *const f32 {
     CHANNELS.with_borrow(|channels| start(channels.audio.get(index)))
 }
 
-/// Where haptic channel `index` of the last block lies; null where there is none.
+/// Address of haptic channel `index` of the last block; null where there is none.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_haptic(index: usize) -> *const f32 {
     CHANNELS.with_borrow(|channels| start(channels.haptic.get(index)))
@@ -116,7 +116,7 @@ fn start(signal: Option<&Vec<f32>>) -> *const f32 {
     signal.filter(|signal| !signal.is_empty()).map_or(std::ptr::null(), |signal| signal.as_ptr())
 }
 
-/// Where the numbers of the last block lie, 16 of them: contacts that touch (0, 1, 2 = several),
+/// Address of the numbers of the last block, 16 of them: contacts that touch (0, 1, 2 = several),
 /// then of the first one the lowest and highest ground, m, lowest and highest skin, m, place along
 /// u and v, m, velocity along u and v, m/s, force, N, momentum sent, N·s, name.
 #[unsafe(no_mangle)]

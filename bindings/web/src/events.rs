@@ -9,7 +9,7 @@ use std::cell::RefCell;
 pub const EVENT_NUMBERS: usize = 32;
 /// Game time, s.
 pub const TIME_S: usize = 0;
-/// What happened: 1 begin, 2 move, 3 end, 4 impact.
+/// Kind of event: 1 begin, 2 move, 3 end, 4 impact.
 pub const KIND: usize = 1;
 /// The contact's name, a whole number.
 pub const CONTACT: usize = 2;
@@ -29,7 +29,7 @@ pub const VELOCITY_M_S: usize = 9;
 pub const NORMAL_FORCE_N: usize = 11;
 /// Approach speed at landing, m/s.
 pub const CLOSING_M_S: usize = 12;
-/// How deep the tip stands below the untouched surface, m.
+/// Depth of the tip below the untouched surface, m.
 pub const DEPTH_M: usize = 13;
 /// Place in the body, m, three.
 pub const AT_M: usize = 14;
@@ -62,7 +62,7 @@ thread_local! {
     static EVENT: RefCell<[f64; EVENT_NUMBERS]> = const { RefCell::new([f64::NAN; EVENT_NUMBERS]) };
 }
 
-/// Where the row lies, to be filled before a report.
+/// Address of the row, to be filled before a report.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_event() -> *mut f64 {
     EVENT.with_borrow_mut(|event| event.as_mut_ptr())

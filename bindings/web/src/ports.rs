@@ -5,7 +5,7 @@ use crate::session;
 use asperity::ChannelId;
 use asperity::live::ports::{Feed, Levels, Picture};
 
-/// How much of what a port tells waits for a page that is late, s.
+/// Time of a port's output that waits for a late page, s.
 const HOLDS_S: f64 = 0.25;
 
 /// Opens the levels of a haptic channel, `rate_hz` a second, in the place of those before.

@@ -6,12 +6,14 @@ use asperity::files::FileError;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::load::{self, Overrides};
-use asperity::{BusId, ChannelId, BodyId, ClockMode, Engine, Isa, Material, ProbeId, Renderer, Scene, SurfaceId};
+use asperity::{
+    BodyId, BusId, ChannelId, ClockMode, Engine, Isa, Material, ProbeId, Renderer, Scene, SurfaceId,
+};
 use serde_json::json;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// What the scene is called in sentences about it.
+/// Name of the scene in messages about it.
 const SCENE: &str = "scene.toml";
 
 thread_local! {
@@ -105,7 +107,7 @@ fn names(file: &SceneFile) -> serde_json::Value {
     })
 }
 
-/// What JavaScript has to know of an engine.
+/// Description of an engine for JavaScript.
 fn told(file: &SceneFile, engine: &Engine) -> serde_json::Value {
     let mut told = names(file);
     told["sample_rate_hz"] = engine.renderer.sample_rate_hz().into();
@@ -147,7 +149,7 @@ pub extern "C" fn asp_apply() -> u32 {
     done(applied.map(answer))
 }
 
-/// What the whole engine does: see the constants beside.
+/// Sets what concerns the whole engine: see the constants beside.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_do(what: u32, index: u32, value: f64) -> u32 {
     done(with(|Session { scene, .. }| {

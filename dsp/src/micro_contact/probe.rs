@@ -16,8 +16,8 @@ pub const PAD_DAMPING_N_S_M: f64 = 2.0;
 pub const FINGER_MASS_KG: f64 = 20e-3;
 /// Stiffness of skin on surface at 1 N, N/m. **Measured here**: above it the contact is chaotic on
 /// rough ground, below it micro-collisions are silent (with 8–16 µm of micro-relief, 0.05–0.2 m/s;
-/// `docs/lab/feel.md` has the map). The same as F/u of a rough contact (B. Persson 2007: u about 0.4
-/// rms) on 12 µm.
+/// `docs/lab/feel.md` has the map). The same as F/u of a rough contact (B. Persson 2007: u about
+/// 0.4 rms) on 12 µm.
 pub const CONTACT_STIFFNESS_N_M: f64 = 2e5;
 /// n of k_m ∝ Fⁿ: Hertz, a sphere on a plane.
 pub const FORCE_EXPONENT: f64 = 1.0 / 3.0;

@@ -1,11 +1,11 @@
-//! What nodes put into a world's engine and take out of it: bodies, and surfaces on them.
+//! Members of a world's engine, which nodes put in and take out: bodies, and surfaces on them.
 
 use super::{AsperityWorld, BODIES};
 use crate::body::AsperityBody;
 use crate::surface::AsperitySurface;
 use asperity::load::{Overrides, ReadSurface};
 use asperity::surface::sand::SandWorker;
-use asperity::{BusId, BodyId, SurfaceId};
+use asperity::{BodyId, BusId, SurfaceId};
 use godot::prelude::*;
 use std::path::Path;
 

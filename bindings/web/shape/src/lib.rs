@@ -25,9 +25,9 @@ use std::path::Path;
 const MOST_MODES: usize = 64;
 /// Longest sides that a body in metres is likely to have, m; one in other units gets [`USUAL_M`].
 const LIKELY_M: RangeInclusive<f64> = 0.02..=2.0;
-/// What it gets, m.
+/// Size without one, m.
 const USUAL_M: f64 = 0.15;
-/// Nobody hears a mode above this, Hz.
+/// Highest audible mode, Hz.
 const HEARD_HZ: f64 = 16_000.0;
 
 thread_local! {
@@ -46,13 +46,13 @@ pub extern "C" fn shape_inbox(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Where the last answer lies.
+/// Address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn shape_outbox() -> *const u8 {
     OUTBOX.with_borrow(|outbox| outbox.as_ptr())
 }
 
-/// How long it is, bytes.
+/// Length of the last answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn shape_outbox_bytes() -> usize {
     OUTBOX.with_borrow(Vec::len)
@@ -94,7 +94,7 @@ pub extern "C" fn shape_solve(
     is_done
 }
 
-/// What the last solve mended or doubts.
+/// Remarks of the last solve.
 #[unsafe(no_mangle)]
 pub extern "C" fn shape_told() {
     OUTBOX.set(TOLD.take().into_bytes());

@@ -4,10 +4,10 @@
 //! ```text
 //! Z(ω) += Z_r(ω) g(λ)        g = 1 up to FINE_PX[0], cos² in octaves down to 0 at FINE_PX[1]
 //! ```
-//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::darkness_prior`]). A mean
-//! cell has lost the grain that lies on the pattern, and the engine's overlay begins at two texels
-//! only: without g nothing at all would be felt between two texels and the cell. Longer waves of
-//! the residual are dirt, wear and uneven light, which is what averaging is for.
+//! Z: heights of the mean cell, Z_r: heights of the residual ([`mod@crate::darkness_prior`]). A
+//! mean cell has lost the grain that lies on the pattern, and the engine's overlay begins at two
+//! texels only: without g nothing at all would be felt between two texels and the cell. Longer
+//! waves of the residual are dirt, wear and uneven light, which is what averaging is for.
 
 use super::heights::contrast;
 use crate::camera_noise::without_noise_and_steps;
