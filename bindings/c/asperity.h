@@ -33,7 +33,7 @@
 /// The fastest instruction set of this processor.
 #define ASP_KERNEL_BEST 0
 
-/// The same bits on every processor.
+/// Kernel with equal bits on every processor.
 #define ASP_KERNEL_PORTABLE 1
 
 /// Most haptic channels of an engine that is built or loaded here.
@@ -174,7 +174,7 @@
 /// An amplitude and a frequency some hundred times a second: read with `asp_port_points`.
 #define ASP_PORT_POINTS 2
 
-/// How hard a heavy and a light motor turn: read with `asp_port_levels`.
+/// Levels of a heavy and a light motor: read with `asp_port_levels`.
 #define ASP_PORT_LEVELS 3
 
 /// The 3-D force of contacts and hands: read with `asp_port_forces`.
@@ -265,7 +265,7 @@
 /// `asp_check_abi`.
 #define ASP_ABI 1
 
-/// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
+/// Number of structs in the header, in the order in which `asp_check_abi` takes their sizes.
 #define ASP_STRUCTS 13
 
 /// An engine that plays on a sound card.
@@ -280,7 +280,7 @@ typedef struct asp_renderer asp_renderer;
 /// The game's half of an engine: takes bodies, surfaces and events. One thread at a time.
 typedef struct asp_scene asp_scene;
 
-/// Where a program puts what it was asked for: valid within that one call of its function.
+/// Receiver of a file's bytes: valid within that one call of its function.
 typedef struct asp_sink asp_sink;
 
 /// A tracked tip.
@@ -292,7 +292,7 @@ typedef struct asp_mode {
     double frequency_hz;
     /// Decay, 1/s.
     double decay_per_s;
-    /// What the impulse of the body's modes is answered with.
+    /// Amplitude after the impulse that the body's modes are given for.
     double amplitude;
     /// Phase at the onset, rad.
     double phase_rad;
@@ -303,7 +303,7 @@ typedef struct asp_mode {
 /// else: there is no such file.
 typedef int32_t (*asp_read)(void *user, const char *path, struct asp_sink *sink);
 
-/// Where files lie; `asp_files_init` fills it. NULL wherever it is asked for means the disk.
+/// Source of files; `asp_files_init` fills it. NULL wherever it is asked for means the disk.
 typedef struct asp_files {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -321,15 +321,15 @@ typedef struct asp_files {
 typedef struct asp_body {
     /// Size of this struct, bytes.
     uint32_t struct_size;
-    /// What it is made of: ASP_MATERIAL_...
+    /// Material: ASP_MATERIAL_...
     uint32_t material;
     /// Audio bus on which it sounds, from 0.
     uint32_t bus;
-    /// How many `modes` there are.
+    /// Number of `modes`.
     uint32_t mode_count;
     /// Gain, linear, 0 to 1000.
     double gain;
-    /// What `asp_find`, logs and recordings call it; NULL = nothing.
+    /// Name in `asp_find`, logs and recordings; NULL = none.
     const char *name;
     /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can",
     /// "bottle", "pan", "barrel" or "door".
@@ -345,15 +345,15 @@ typedef struct asp_body {
     /// Keys of a scene file's `[[body]]`, TOML: a file of modes, a material's constants, ...; the
     /// fields above count more.
     const char *table;
-    /// Where files lie that `table` names; NULL = the disk.
+    /// Place of the files that `table` names; NULL = the disk.
     const struct asp_files *files;
-    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
+    /// Gain of impacts relative to strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as
     /// `table` says, else as the level policy has found for the bodies of a scene file, else 1.
     /// (Since 0.1.1.)
     double strike_gain;
 } asp_body;
 
-/// How an engine is built; `asp_config_init` fills it.
+/// Settings of a new engine; `asp_config_init` fills it.
 typedef struct asp_config {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -433,7 +433,7 @@ typedef struct asp_event {
     double radius_m;
     /// impact: rebound over approach speed, 0 to 1.
     double restitution;
-    /// Of a striker of ASP_MATERIAL_CUSTOM: Young's modulus, Pa.
+    /// Young's modulus of a striker of ASP_MATERIAL_CUSTOM, Pa.
     double striker_young_pa;
     /// Its Poisson ratio.
     double striker_poisson;
@@ -462,7 +462,7 @@ typedef struct asp_image {
     uint32_t channels;
 } asp_image;
 
-/// How it is played; `asp_player_config_init` fills it for the default device.
+/// Settings of a player; `asp_player_config_init` fills it for the default device.
 typedef struct asp_player_config {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -478,11 +478,11 @@ typedef struct asp_player_config {
     const char *device;
     /// A second device for the haptic channels; NULL = none.
     const char *haptic_device;
-    /// What its channels carry, for instance "audio=0,1 haptic=2,3"; NULL = just that.
+    /// Signals of its channels, for instance "audio=0,1 haptic=2,3"; NULL = just that.
     const char *channels;
 } asp_player_config;
 
-/// What a player met; `asp_player_report_init` fills in the size.
+/// Report of a player; `asp_player_report_init` fills in the size.
 typedef struct asp_player_report {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -502,7 +502,7 @@ typedef struct asp_player_report {
     double peak_load;
 } asp_player_report;
 
-/// What is wanted of a port; `asp_port_config_init` fills it for 0.1 s of haptic channel 0.
+/// Settings of a port; `asp_port_config_init` fills it for 0.1 s of haptic channel 0.
 typedef struct asp_port_config {
     /// Size of this struct, bytes.
     uint32_t struct_size;
@@ -514,13 +514,13 @@ typedef struct asp_port_config {
     uint32_t index;
     /// Points, levels or forces a second, Hz.
     double rate_hz;
-    /// How much a late reader still finds, s, 0.001 to 60.
+    /// Time that a late reader still finds, s, 0.001 to 60.
     double holds_s;
-    /// Of points: the lowest frequency that the device plays, Hz.
+    /// Lowest frequency of points that the device plays, Hz.
     double low_hz;
     /// The highest.
     double high_hz;
-    /// Of points: 0 = the frequency is drawn, so that every band has its share; 1 = the strongest.
+    /// Frequency of points: 0 = it is drawn, so that every band has its share; 1 = the strongest.
     uint32_t strongest;
     /// 0.
     uint32_t reserved;
@@ -598,7 +598,7 @@ typedef struct asp_stats {
     uint64_t clock_jumps;
     /// Times the game was found to run at another pace.
     uint64_t clock_paces;
-    /// How far ahead of the audio the latest event was stamped, samples.
+    /// Lead of the latest event's stamp over the audio, samples.
     uint64_t ahead;
     /// Pieces of work left out because blocks ran late.
     uint64_t shed;
@@ -629,11 +629,11 @@ typedef struct asp_surface {
     uint32_t wrap;
     /// The body that rings when it is touched; 0 = none, or the one that `table` names.
     uint64_t body;
-    /// What `asp_find`, logs and recordings call it; NULL = nothing.
+    /// Name in `asp_find`, logs and recordings; NULL = none.
     const char *name;
-    /// What uv 0 to 1 spans along u, m.
+    /// Span of uv 0 to 1 along u, m.
     double width_m;
-    /// What uv 0 to 1 spans along v, m.
+    /// Span of uv 0 to 1 along v, m.
     double height_m;
     /// Height of a sample of full scale (255, 65535 or 1.0) above 0, m; 1 if the heights are
     /// metres.
@@ -652,12 +652,12 @@ typedef struct asp_surface {
     double micro_relief_m;
     /// Coulomb friction of the force.
     double friction;
-    /// How far it gives way, m/N; 0 = hard.
+    /// Compliance, m/N; 0 = hard.
     double compliance_m_n;
     /// Keys of a scene file's `[[surface]]`, TOML: solid = "granite", sand = { ... }, files of maps,
     /// ...; the fields above count more.
     const char *table;
-    /// Where files lie that `table` names; NULL = the disk.
+    /// Place of the files that `table` names; NULL = the disk.
     const struct asp_files *files;
 } asp_surface;
 
@@ -788,7 +788,7 @@ int32_t asp_play(struct asp_renderer *renderer, const struct asp_player_config *
 /// fit is cut.
 int32_t asp_player_device(struct asp_player *player, char *words, uint32_t size);
 
-/// What the player met so far; one that plays to nobody tells it only when it is stopped.
+/// Report of the player so far; one that plays to nobody tells it only when it is stopped.
 int32_t asp_get_player_report(struct asp_player *player, struct asp_player_report *report);
 
 /// Stops and frees a player; null is nothing. `report` (may be NULL) is what it met.
@@ -813,7 +813,7 @@ void asp_port_levels(struct asp_port *port, double *heavy, double *light);
 /// The oldest forces that are left, at most `count`; how many there were.
 uint32_t asp_port_forces(struct asp_port *port, struct asp_force *forces, uint32_t count);
 
-/// How much was overwritten before it was read: samples, points, levels or forces.
+/// Number that was overwritten before it was read: samples, points, levels or forces.
 uint64_t asp_port_lost(struct asp_port *port);
 
 /// Adds a probe and gives its id, which is never 0. `table` is what a scene file's `[[probe]]`
@@ -887,7 +887,7 @@ int32_t asp_set_time_scale(struct asp_scene *scene, double scale);
 /// nothing.
 void asp_init_stats(struct asp_stats *stats, uint32_t size);
 
-/// What the engine did so far.
+/// Statistics of the engine so far.
 int32_t asp_get_stats(struct asp_scene *scene, struct asp_stats *stats);
 
 /// Peak level of each bus as a meter shows it, linear; buses beyond those of the scene are 0.
