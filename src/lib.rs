@@ -88,6 +88,7 @@ pub mod live;
 pub mod load;
 mod model;
 pub mod offline;
+mod opaque;
 pub mod parameters;
 mod rate;
 mod resource;

@@ -278,3 +278,5 @@ pub fn relief_from(
     let maker = Loader { files, maps: &Maps::default(), own: &[], seed, workers: None };
     maker.ground(entry).relief(&entry.source, longest)
 }
+
+crate::opaque::debug_by_name!(Overrides<'_>);

@@ -340,3 +340,5 @@ fn raised_cosine(steps: usize) -> Box<[f64]> {
 fn shortest(channels: &[&mut [f32]]) -> usize {
     channels.iter().map(|channel| channel.len()).min().unwrap_or(usize::MAX)
 }
+
+crate::opaque::debug_by_name!(Renderer);

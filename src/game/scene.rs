@@ -387,3 +387,5 @@ impl Scene {
         self.bodies.get(id.0).cloned().ok_or(AddError::Unknown("body"))
     }
 }
+
+crate::opaque::debug_by_name!(Scene);

@@ -116,3 +116,11 @@ pub struct Opened<P> {
     /// For whoever reads.
     pub port: P,
 }
+
+impl<P> std::fmt::Debug for Opened<P> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Opened").field("has_outlet", &self.outlet.is_some()).finish_non_exhaustive()
+    }
+}
+
+crate::opaque::debug_by_name!(PortSetup<'_>);

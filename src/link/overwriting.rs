@@ -18,6 +18,7 @@
 use crate::link::threads::Arc;
 use crate::link::threads::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering, fence};
 
+#[derive(Debug)]
 struct Ring {
     words: Box<[AtomicU32]>,
     claimed: AtomicU64,
@@ -32,12 +33,14 @@ impl Ring {
 }
 
 /// Writing end, for the audio half.
+#[derive(Debug)]
 pub struct Writer {
     ring: Arc<Ring>,
     at: u64,
 }
 
 /// Reading end, for any one other thread. Dropping it closes the ring.
+#[derive(Debug)]
 pub struct Reader {
     ring: Arc<Ring>,
     at: u64,

@@ -5,9 +5,11 @@
 use asperity_surface::exclusive::Exclusive;
 
 /// Sending end of a ring.
+#[derive(Debug)]
 pub(crate) struct Sender<T>(Exclusive<rtrb::Producer<T>>);
 
 /// Receiving end of a ring.
+#[derive(Debug)]
 pub(crate) struct Receiver<T>(Exclusive<rtrb::Consumer<T>>);
 
 /// A ring that holds up to `capacity` items.

@@ -83,6 +83,7 @@ impl ChannelMap {
 
 /// A renderer behind an interleaved callback of any size. Nothing in [`fill`](Self::fill)
 /// allocates.
+#[derive(Debug)]
 pub struct Interleaver {
     renderer: Renderer,
     map: ChannelMap,

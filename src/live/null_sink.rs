@@ -23,6 +23,7 @@ pub struct Pace {
 }
 
 /// A running null sink; dropping it stops the thread.
+#[derive(Debug)]
 pub struct NullSink {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<(Interleaver, Pace)>>,

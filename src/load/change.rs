@@ -19,7 +19,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 /// Result of a changed scene file.
-#[derive(Default)]
+#[derive(Debug, Default)]
 #[non_exhaustive]
 pub struct Changes {
     /// Changes, in words: `surface "tiles": changed`.

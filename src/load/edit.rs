@@ -126,3 +126,5 @@ fn known_surface(names: &Names, name: &str) -> Result<SurfaceId, FileError> {
         || FileError::new(format!("surface \"{name}\""), "is unknown", "name a surface of the scene");
     names.surfaces.get(name).copied().ok_or_else(unknown)
 }
+
+crate::opaque::debug_by_name!(Edits<'_>);

@@ -105,3 +105,5 @@ impl Maps {
         Ok(map)
     }
 }
+
+crate::opaque::debug_by_name!(Maps);

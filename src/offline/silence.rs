@@ -15,7 +15,7 @@ const FAINT: f32 = 1e-9;
 const UNFELT: f64 = 1e-9;
 
 /// A render, and what it was made of.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Rendered<'a> {
     /// The scene.
     pub file: &'a SceneFile,

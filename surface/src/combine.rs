@@ -231,3 +231,5 @@ impl HeightField for Crossfade {
         shared([(*touch, 1.0 - w), (*touch, w)])
     }
 }
+
+crate::opaque::debug_by_name!(Sum, Scale, Crossfade);

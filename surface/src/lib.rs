@@ -20,6 +20,7 @@ pub mod height_map;
 pub mod lattice;
 mod local_relief;
 pub mod moving_picture;
+mod opaque;
 pub mod raster;
 pub mod sand;
 pub mod solid_materials;

@@ -244,6 +244,8 @@ impl HeightField for Tiled {
     }
 }
 
+crate::opaque::debug_by_name!(Tiled);
+
 #[cfg(test)]
 mod tests {
     use super::*;

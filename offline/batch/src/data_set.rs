@@ -18,6 +18,7 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A data set that is being made.
+#[derive(Debug)]
 pub struct DataSet {
     spec: Spec,
     folder: PathBuf,

@@ -20,6 +20,7 @@ const CONTACTS: usize = 1;
 pub type ForceTable = [Vec<f64>; COLUMNS.len()];
 
 /// Watches the contact of a stroke.
+#[derive(Debug)]
 pub struct ForceWatch {
     rate_hz: f64,
     samples_a_row: f64,

@@ -37,6 +37,7 @@ const ROWS: usize = 64;
 const BUILD: &str = "asperity.build";
 
 /// Writes a shard row by row.
+#[derive(Debug)]
 pub struct Shard<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     rows: Vec<Record>,

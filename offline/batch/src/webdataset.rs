@@ -23,6 +23,12 @@ pub struct Shard<W: Write> {
     more: Vec<(String, String)>,
 }
 
+impl<W: Write> std::fmt::Debug for Shard<W> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Shard").field("build", &self.build).finish_non_exhaustive()
+    }
+}
+
 impl<W: Write> Shard<W> {
     /// Begins a shard. `more` stands in every record.
     pub fn begin(out: W, build: &Build, more: &[(String, String)]) -> Self {

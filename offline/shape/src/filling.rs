@@ -32,6 +32,7 @@ const VOLUME: f64 = 0.03;
 const LOST: f64 = 0.01;
 
 /// A surface ready to be filled.
+#[derive(Debug)]
 pub struct Body {
     mesh: SurfaceMesh,
     tree: TriangleTree,

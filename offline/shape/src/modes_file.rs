@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Contents of the file.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 pub struct ModesFile {
     format: &'static str,
     version: u32,
@@ -28,7 +28,7 @@ pub struct ModesFile {
     shapes_beside: Option<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct FileDamping {
     alpha_per_s: f64,
     eta: f64,

@@ -14,6 +14,7 @@ const LEAF: usize = 6;
 /// 0.01.
 const FAR: f64 = 2.5;
 
+#[derive(Debug)]
 struct Node {
     low: Vec3,
     high: Vec3,
@@ -27,6 +28,7 @@ struct Node {
 }
 
 /// Triangles for questions of place.
+#[derive(Debug)]
 pub struct TriangleTree {
     triangles: Vec<[Vec3; 3]>,
     nodes: Vec<Node>,

@@ -29,6 +29,7 @@ pub struct Force {
 const ROW_WORDS: usize = 16;
 
 /// Reads forces.
+#[derive(Debug)]
 pub struct ForcePort {
     words: Reader,
     rate_hz: f64,

@@ -21,6 +21,7 @@ pub struct Levels {
 }
 
 /// Reads levels.
+#[derive(Debug)]
 pub struct LevelsPort {
     points: PointsPort,
     newest: [f64; 2],

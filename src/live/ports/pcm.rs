@@ -18,6 +18,7 @@ pub struct Pcm {
 }
 
 /// Reads samples.
+#[derive(Debug)]
 pub struct PcmPort {
     words: Reader,
     sample_rate_hz: f64,

@@ -27,6 +27,7 @@ pub struct Points {
 }
 
 /// Reads points.
+#[derive(Debug)]
 pub struct PointsPort {
     words: Reader,
     rate_hz: f64,

@@ -231,3 +231,5 @@ impl HeightField for BrownianPath {
         }
     }
 }
+
+crate::opaque::debug_by_name!(BrownianSurface);

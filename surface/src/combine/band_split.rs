@@ -118,3 +118,5 @@ impl HeightField for BandSplit {
         set_parts(&mut self.sources, change, sample)
     }
 }
+
+crate::opaque::debug_by_name!(BandSplit);

@@ -75,3 +75,5 @@ impl HeightField for Mask {
         }
     }
 }
+
+crate::opaque::debug_by_name!(Mask);

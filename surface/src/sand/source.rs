@@ -421,3 +421,5 @@ impl HeightField for SandSource {
         true
     }
 }
+
+crate::opaque::debug_by_name!(SandSource);

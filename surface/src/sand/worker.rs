@@ -119,3 +119,5 @@ impl SandThread {
         self.handle.join().ok()
     }
 }
+
+crate::opaque::debug_by_name!(SandWorker, SandThread);

@@ -150,3 +150,9 @@ impl Step<'_> {
         (along(centre + spin.cross(solved.point_m - other.centre_m)), slip)
     }
 }
+
+impl std::fmt::Debug for Step<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Step").finish_non_exhaustive()
+    }
+}

@@ -50,3 +50,9 @@ impl View<'_> {
         self.body_of(collider).map(motion).unwrap_or_default()
     }
 }
+
+impl std::fmt::Debug for View<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("View").finish_non_exhaustive()
+    }
+}

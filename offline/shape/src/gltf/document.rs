@@ -11,6 +11,7 @@ const LARGEST: u64 = 1 << 30;
 const MOST_SPARSE: u64 = 3 * crate::surface_mesh::MOST_TRIANGLES as u64;
 
 /// A document with its buffers.
+#[derive(Debug)]
 pub struct Document {
     /// The JSON.
     pub json: Value,
@@ -19,6 +20,7 @@ pub struct Document {
 }
 
 /// An accessor's numbers, one row after the other.
+#[derive(Debug)]
 pub struct Rows {
     /// All of them.
     pub values: Vec<f64>,
