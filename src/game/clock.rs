@@ -176,8 +176,8 @@ impl Clock {
         }
     }
 
-    /// Sample that a strike due at `sample` is moved to, so that a game that catches up after a hitch
-    /// does not throw two strikes onto one; none where they are apart.
+    /// Sample that a strike due at `sample` is moved to, so that a game that catches up after a
+    /// hitch does not throw two strikes onto one; none where they are apart.
     fn kept_apart(&self, time_s: f64, sample: f64, position: f64) -> Option<f64> {
         let (before_s, sounds) = self.struck?;
         let apart_s = ((time_s - before_s) / self.pace()).min(AFTER_TIE_S);

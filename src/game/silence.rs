@@ -157,7 +157,7 @@ pub enum SilentBecause {
     /// The reports of a surface contradict themselves: something sounds, and not what was meant.
     #[error("{0}")]
     Contradicts(Contradiction),
-    /// What moves or strikes is told at one and the same time.
+    /// Moves or impacts are told at one and the same time.
     #[error(
         "{count} reports came at one time, {time_s} s, as if nothing had moved in it; report each with the game's time in \
          seconds, which goes on from step to step"
@@ -287,7 +287,11 @@ impl Reported {
         say(self.contacts > 0 && !self.pressed, SilentBecause::NeverPressed);
         let strokes_only = self.contacts > 0 && self.impacts == 0;
         say(strokes_only && !self.moved && !self.landed, SilentBecause::NeverMoved);
-        because.extend(self.slips.reasons());
+        let Self { slips, .. } = self;
+        because.extend(slips.stands().map(|(count, time_s)| SilentBecause::TimeStands { count, time_s }));
+        let too_hard = slips.too_hard();
+        because.extend(too_hard.map(|(count, force_n)| SilentBecause::PressedTooHard { count, force_n }));
+        because.extend(slips.at_every_step().map(|count| SilentBecause::StruckEveryStep { count }));
         because
     }
 

@@ -4,7 +4,6 @@
 //! Each is counted over reports that follow each other; what is found stands among the reasons of
 //! [`Scene::why_silent`](crate::Scene::why_silent).
 
-use crate::game::silence::SilentBecause;
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::id::BodyId;
 use std::collections::HashMap;
@@ -96,17 +95,24 @@ impl Slips {
         }
     }
 
-    /// Slips found so far.
-    pub(crate) fn reasons(&self) -> impl Iterator<Item = SilentBecause> {
-        let at = self.first_s.filter(|_| !self.goes_on && self.at_once >= LEAST_REPORTS);
-        let stands = at.map(|time_s| SilentBecause::TimeStands { count: self.at_once, time_s });
+    /// Reports of something new at the only time that was told, and that time, s; none where time
+    /// goes on.
+    pub(crate) fn stands(&self) -> Option<(u64, f64)> {
+        let at_s = self.first_s.filter(|_| !self.goes_on && self.at_once >= LEAST_REPORTS);
+        at_s.map(|at_s| (self.at_once, at_s))
+    }
+
+    /// Reports in which a light probe presses too hard, and their mean, N; none where it is not
+    /// nearly all of them.
+    pub(crate) fn too_hard(&self) -> Option<(u64, f64)> {
         let Pressed { reports, heavy, sum_n } = self.pressed;
-        let is_heavy = heavy >= LEAST_REPORTS && (reports - heavy) * REPORTS_A_LIGHT_ONE <= reports;
-        let heavy =
-            is_heavy.then(|| SilentBecause::PressedTooHard { count: heavy, force_n: sum_n / heavy as f64 });
-        let every_step = self.in_a_row >= BLOWS_IN_A_ROW;
-        let struck = every_step.then_some(SilentBecause::StruckEveryStep { count: self.in_a_row });
-        [stands, heavy, struck].into_iter().flatten()
+        let is_habit = heavy >= LEAST_REPORTS && (reports - heavy) * REPORTS_A_LIGHT_ONE <= reports;
+        is_habit.then(|| (heavy, sum_n / heavy as f64))
+    }
+
+    /// Most blows in a row on one body, one at every step; none where that is no habit.
+    pub(crate) fn at_every_step(&self) -> Option<u64> {
+        (self.in_a_row >= BLOWS_IN_A_ROW).then_some(self.in_a_row)
     }
 }
 

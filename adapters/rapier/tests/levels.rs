@@ -27,9 +27,9 @@ fn collider(rng: &mut Rng, mass_kg: f64) -> (ColliderBuilder, f32) {
     (shape.mass(mass_kg as f32).friction(0.1), half_m)
 }
 
-/// A thing of 10 g to 100 kg that falls 0.3 m onto ground of 1 µm to 1 mm and goes on at 1 m/s, then
-/// 1.2 m and at 2 m/s; by how much limiters turn down, dB, where all of it is reported or its blows
-/// alone.
+/// A thing of 10 g to 100 kg that falls 0.3 m onto ground of 1 µm to 1 mm and goes on at 1 m/s,
+/// then 1.2 m and at 2 m/s; by how much limiters turn down, dB, where all of it is reported or its
+/// blows alone.
 fn limited_db(rng: &mut Rng, strokes: bool) -> f64 {
     let [mass_kg, relief_m] =
         [10f64.powf(-2.0 + 4.0 * rng.uniform()), 10f64.powf(-6.0 + 3.0 * rng.uniform())];

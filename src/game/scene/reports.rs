@@ -19,7 +19,7 @@ use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// What has less mass behind it is a finger, or a tool that is held lightly, kg.
+/// Mass behind a probe below which it is a finger, or a tool that is held lightly, kg.
 const LIGHT_KG: f64 = 0.5;
 
 impl Scene {
