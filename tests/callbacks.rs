@@ -4,39 +4,20 @@
 use crate::common;
 
 use asperity::{
-    ActuatorSettings, Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine,
-    Impact, Material, Renderer, Scene, SilentBecause, Stats, Stock, SurfaceId,
+    Actuator, ActuatorSettings, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Impact,
+    Material, SilentBecause, Stats, Stock,
 };
-use common::{SIDE_M, peak, plate, rms};
+use common::game::{Game, TICK_S, block};
+use common::{SIDE_M, peak, rms};
 
 const RATE_HZ: f64 = 48_000.0;
 const TICK: usize = 800;
-const TICK_S: f64 = 1.0 / 60.0;
 
-struct Game {
-    scene: Scene,
-    renderer: Renderer,
-    block: BodyId,
-    surface: SurfaceId,
-    tick: u32,
-}
-
+/// What the tests' game does beside reports.
 impl Game {
-    fn new() -> Self {
+    fn live() -> Self {
         let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };
-        let config = Config { actuators: vec![si], ..common::raw_live(RATE_HZ) };
-        let Engine { mut scene, renderer, .. } = config.build().unwrap();
-        let block = scene.add_body(block()).unwrap();
-        let surface = scene.add_surface(plate(0.8).body(block)).unwrap();
-        Self { scene, renderer, block, surface, tick: 0 }
-    }
-
-    fn now_s(&self) -> f64 {
-        f64::from(self.tick) * TICK_S
-    }
-
-    fn report(&mut self, event: ContactEvent) {
-        self.scene.report(self.now_s(), event).unwrap();
+        Self::new(Config { actuators: vec![si], ..common::raw_live(RATE_HZ) })
     }
 
     fn strike(&mut self, body: BodyId, speed_m_s: f64) {
@@ -49,13 +30,7 @@ impl Game {
 
     /// A report of a stroke along u.
     fn stroke(&mut self, contact: u64, speed_m_s: f64, begins: bool) {
-        let sample = along(self.now_s(), speed_m_s);
-        let event = if begins {
-            ContactEvent::begin(ContactId(contact), self.surface, ChannelId(0), sample)
-        } else {
-            ContactEvent::moved(ContactId(contact), sample)
-        };
-        self.report(event);
+        self.touch(contact, along(self.now_s(), speed_m_s), begins);
     }
 
     /// Ticks, each with the game's part in it; returns the heard and the felt samples.
@@ -81,10 +56,6 @@ impl Game {
     }
 }
 
-fn block() -> Body {
-    Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()
-}
-
 fn blow(body: BodyId, speed_m_s: f64) -> ContactEvent {
     ContactEvent::Impact(Impact::on(body).striker(Material::STEEL, 0.01, 0.005).at_speed(speed_m_s))
 }
@@ -99,7 +70,7 @@ fn db(ratio: f64) -> f64 {
 
 /// One strike alone.
 fn alone(speed_m_s: f64) -> Vec<f32> {
-    let mut game = Game::new();
+    let mut game = Game::live();
     game.run(30, |game, tick| {
         if tick == 0 {
             game.strike_block(speed_m_s);
@@ -112,7 +83,7 @@ fn alone(speed_m_s: f64) -> Vec<f32> {
 fn a_collision_told_four_times_in_a_tick_sounds_once_where_the_body_has_a_least_time() {
     // Once for each collider and each side: both of a pair tell the other.
     for (least_time_s, wanted_db, too_soon) in [(0.0, 12.0, 0), (0.03, 0.0, 3)] {
-        let mut game = Game::new();
+        let mut game = Game::live();
         let body = game.scene.add_body(block().least_time_s(least_time_s)).unwrap();
         let heard = game.run(30, |game, tick| {
             if tick == 0 {
@@ -128,7 +99,7 @@ fn a_collision_told_four_times_in_a_tick_sounds_once_where_the_body_has_a_least_
 #[test]
 fn events_that_nobody_clears_sound_once_where_the_body_has_a_least_time() {
     // A queue of events that is read but not emptied tells a strike again in each of three ticks.
-    let mut game = Game::new();
+    let mut game = Game::live();
     let body = game.scene.add_body(block().least_time_s(0.1)).unwrap();
     let heard = game.run(30, |game, tick| {
         if tick < 3 {
@@ -141,7 +112,7 @@ fn events_that_nobody_clears_sound_once_where_the_body_has_a_least_time() {
 
 #[test]
 fn a_weak_blow_does_not_cut_off_a_strong_one_and_ten_a_second_ring_into_each_other() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let both = game.run(30, |game, tick| match tick {
         0 => game.strike_block(1.0),
         3 => game.strike_block(0.01),
@@ -162,7 +133,7 @@ fn a_blow_twice_as_fast_is_six_decibels_louder_and_one_of_nothing_is_silent() {
 
 #[test]
 fn a_body_that_is_told_to_strike_itself_sounds_as_struck_once() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let block = game.block;
     let heard = game.run(30, |game, tick| {
         if tick == 0 {
@@ -175,7 +146,7 @@ fn a_body_that_is_told_to_strike_itself_sounds_as_struck_once() {
 
 #[test]
 fn no_mass_and_infinite_mass_are_refused_in_words() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     for mass_kg in [0.0, f64::INFINITY, f64::NAN, -1.0] {
         let impact = Impact::on(game.block).striker(Material::STEEL, mass_kg, 0.005).at_speed(1.0);
         let error = game.scene.report(0.0, ContactEvent::Impact(impact)).unwrap_err().to_string();
@@ -187,7 +158,7 @@ fn no_mass_and_infinite_mass_are_refused_in_words() {
 #[test]
 fn a_slide_told_by_both_sides_is_as_loud_as_two_and_one_told_under_one_name_as_one() {
     let level = |ids: [u64; 2]| {
-        let mut game = Game::new();
+        let mut game = Game::live();
         let (heard, felt) = game.run(90, |game, tick| {
             for id in ids {
                 game.stroke(id, 0.1, tick == 0);
@@ -203,7 +174,7 @@ fn a_slide_told_by_both_sides_is_as_loud_as_two_and_one_told_under_one_name_as_o
 
 #[test]
 fn an_end_that_is_told_in_every_frame_harms_nothing_and_a_begin_that_never_came_is_told() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     game.run(60, |game, tick| {
         if tick < 10 {
             game.stroke(1, 0.1, tick == 0);
@@ -212,7 +183,7 @@ fn an_end_that_is_told_in_every_frame_harms_nothing_and_a_begin_that_never_came_
         }
     });
     assert_eq!(game.stats().contacts, 0);
-    let mut game = Game::new();
+    let mut game = Game::live();
     let (heard, _) = game.run(60, |game, _| game.stroke(7, 0.1, false));
     assert_eq!(peak(&heard), 0.0);
     assert!(game.says(|because| matches!(because, SilentBecause::Orphaned { .. })));
@@ -220,7 +191,7 @@ fn an_end_that_is_told_in_every_frame_harms_nothing_and_a_begin_that_never_came_
 
 #[test]
 fn a_controller_whose_end_is_lost_stops_within_half_a_second() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     game.run(30, |game, tick| game.stroke(1, 0.1, tick == 0));
     let (_, felt) = game.run(60, |_, _| ());
     assert!(peak(&felt[..6 * TICK]) > 0.0 && peak(&felt[30 * TICK..]) < 1e-9);
@@ -229,7 +200,7 @@ fn a_controller_whose_end_is_lost_stops_within_half_a_second() {
 
 #[test]
 fn haptics_after_ten_minutes_are_those_of_the_first() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let mut to_and_fro = |ticks: u32, base: u32| {
         game.run(ticks, |game, tick| {
             let turns = (base + tick) / 60;
@@ -255,7 +226,7 @@ fn haptics_after_ten_minutes_are_those_of_the_first() {
 
 #[test]
 fn a_pool_whose_bodies_come_and_go_a_thousand_times_plays_each_and_keeps_no_place() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let (heard, _) = game.run(1000, |game, _| {
         let body = game.scene.add_body(block()).unwrap();
         game.strike(body, 0.2);
@@ -269,7 +240,7 @@ fn a_pool_whose_bodies_come_and_go_a_thousand_times_plays_each_and_keeps_no_plac
 fn places_that_change_at_30_hz_and_are_told_at_120_are_felt_as_a_stroke() {
     // A network interpolates; the collider behind it moves in steps.
     let felt = |stair: bool| {
-        let mut game = Game::new();
+        let mut game = Game::live();
         let (_, felt) = game.run(120, |game, tick| {
             for half in 0..2 {
                 let now_s = game.now_s() + 0.5 * TICK_S * f64::from(half);
@@ -292,7 +263,7 @@ fn places_that_change_at_30_hz_and_are_told_at_120_are_felt_as_a_stroke() {
 
 #[test]
 fn a_hand_that_freezes_for_two_seconds_and_is_elsewhere_then_is_no_blow() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let (_, usual) = game.run(60, |game, tick| game.stroke(1, 0.1, tick == 0));
     // Updates stay away; the game stands at the last place and tells it.
     let held = along(game.now_s(), 0.1);
@@ -307,7 +278,7 @@ fn a_hand_that_freezes_for_two_seconds_and_is_elsewhere_then_is_no_blow() {
 
 #[test]
 fn a_thing_that_is_put_back_at_its_start_stops_sounding_there() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let (before, _) = game.run(60, |game, tick| game.stroke(1, 0.3, tick == 0));
     let (after, _) = game.run(60, |game, _| {
         let sample = ContactSample::new([0.1, 0.5], 0.6).sliding([0.0, 0.0]);
@@ -320,14 +291,14 @@ fn a_thing_that_is_put_back_at_its_start_stops_sounding_there() {
 
 #[test]
 fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let (heard, _) = game.run(120, |game, _| {
         game.strike_block(0.3);
         game.strike_block(0.3);
     });
     let louder = db(peak(&heard) / peak(&alone(0.3)));
     println!("120 blows a second: {louder:+.1} dB over one");
-    let mut game = Game::new();
+    let mut game = Game::live();
     let body = game.scene.add_body(block().least_time_s(0.06)).unwrap();
     let (heard, _) = game.run(120, |game, _| (0..2).for_each(|_| game.strike(body, 0.3)));
     let calmer = db(peak(&heard) / peak(&alone(0.3)));
@@ -336,8 +307,8 @@ fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
 
 #[test]
 fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_a_table_is_muted() {
-    let mut game = Game::new();
-    let begin = ContactEvent::begin(ContactId(1), game.surface, ChannelId(1), along(0.0, 0.1));
+    let mut game = Game::live();
+    let begin = ContactEvent::begin(ContactId(1), game.surface, Actuator(1), along(0.0, 0.1));
     let error = game.scene.report(0.0, begin).unwrap_err().to_string();
     assert!(error.contains('1'), "{error}");
     game.scene.set_haptic_gain(ChannelId(0), 0.0).unwrap();
@@ -347,7 +318,7 @@ fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_
 
 #[test]
 fn an_entity_whose_impacts_are_turned_off_is_silent_and_its_neighbour_is_not() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let quiet = game.scene.add_body(block()).unwrap();
     game.scene.set_body_gain(quiet, 0.0).unwrap();
     let (heard, _) = game.run(20, |game, tick| {
@@ -367,7 +338,7 @@ fn an_entity_whose_impacts_are_turned_off_is_silent_and_its_neighbour_is_not() {
 #[test]
 fn a_thing_three_hundred_times_as_large_is_added_and_heard_or_refused_in_words() {
     for size in [300.0, 0.02] {
-        let mut game = Game::new();
+        let mut game = Game::live();
         match Body::stock(Stock::Block, Material::WOOD, 0.1 * size) {
             Ok(body) => {
                 let body = match game.scene.add_body(body) {
@@ -392,7 +363,7 @@ fn a_thing_three_hundred_times_as_large_is_added_and_heard_or_refused_in_words()
 
 #[test]
 fn negative_and_repeated_times_are_followed() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let mut heard = 0.0f64;
     for k in 0..120 {
         let t = -10.0 + f64::from(k / 2 * 2) * TICK_S;
@@ -411,7 +382,7 @@ fn negative_and_repeated_times_are_followed() {
 
 #[test]
 fn a_hundred_things_that_land_in_one_tick_are_each_struck() {
-    let mut game = Game::new();
+    let mut game = Game::live();
     let bodies: Vec<BodyId> = (0..100).map(|_| game.scene.add_body(block()).unwrap()).collect();
     let (heard, _) = game.run(30, |game, tick| {
         if tick == 0 {
@@ -425,7 +396,7 @@ fn a_hundred_things_that_land_in_one_tick_are_each_struck() {
 #[test]
 fn a_begin_that_is_told_again_without_an_end_goes_on_as_one_contact() {
     let level = |again_every: u32| {
-        let mut game = Game::new();
+        let mut game = Game::live();
         let (heard, felt) = game.run(120, |game, tick| game.stroke(1, 0.1, tick % again_every == 0));
         assert_eq!(game.stats().contacts, 1);
         (rms(&heard[48_000..]), peak(&felt[48_000..]))
@@ -438,7 +409,7 @@ fn a_begin_that_is_told_again_without_an_end_goes_on_as_one_contact() {
 #[test]
 fn a_body_with_a_least_time_sounds_again_while_game_time_stands() {
     // A menu over a game whose time scale is 0.
-    let mut game = Game::new();
+    let mut game = Game::live();
     let body = game.scene.add_body(block().least_time_s(0.1)).unwrap();
     let mut heard = Vec::new();
     for tick in 0..60 {

@@ -1,8 +1,8 @@
 //! Logs that contradict themselves are told, with the unit that was meant; right ones are not.
 
 use asperity::{
-    Config, ContactEvent, ContactId, ContactSample, Contradiction, Engine, Likely, Scene, SilentBecause,
-    Surface, Touching,
+    Body, Config, ContactEvent, ContactId, ContactSample, Contradiction, Engine, Impact, Likely, Material,
+    Scene, SilentBecause, Stock, Surface, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 use std::f64::consts::TAU;
@@ -14,6 +14,7 @@ struct Report {
     contact: u64,
     uv: [f64; 2],
     velocity_m_s: [f64; 2],
+    force_n: f64,
     begins: bool,
 }
 
@@ -81,23 +82,30 @@ fn stroke(kind: &str, rng: &mut Rng) -> Stroke {
     let at = motion(kind, rng);
     let steps = (between(rng, 0.8, 2.5) * rate_hz) as usize;
     let start = [between(rng, 0.1, 0.5), between(rng, 0.1, 0.5)];
+    // From a touch to what a finger can press at most.
+    let force_n = 0.05 * 1200f64.powf(rng.uniform());
     let report = |i: usize| {
         let t = i as f64 / rate_hz;
         let (place, velocity_m_s) = at(t);
         let uv = [0, 1].map(|c| start[c] + place[c] / size_m[c]);
-        Report { t, contact: 1, uv, velocity_m_s, begins: i == 0 }
+        Report { t, contact: 1, uv, velocity_m_s, force_n, begins: i == 0 }
     };
     Stroke { size_m, reports: (0..steps).map(report).collect() }
 }
 
 fn told(stroke: &Stroke, wraps: bool) -> Vec<Contradiction> {
+    contradictions(&reported(stroke, wraps, |_, _| ()))
+}
+
+/// A scene that was told a stroke, and beside each of its reports what `also` tells.
+fn reported(stroke: &Stroke, wraps: bool, mut also: impl FnMut(&mut Scene, f64)) -> Scene {
     let Engine { mut scene, .. } = Config { queue_capacity: 1 << 15, ..Config::default() }.build().unwrap();
     let [width_m, height_m] = stroke.size_m;
     let surface = Surface::flat(width_m, height_m).unwrap();
     let surface = surface.wraps(wraps);
     let surface = scene.add_surface(surface).unwrap();
     for report in &stroke.reports {
-        let sample = ContactSample::new(report.uv, 0.5).sliding(report.velocity_m_s);
+        let sample = ContactSample::new(report.uv, report.force_n).sliding(report.velocity_m_s);
         let contact = ContactId(report.contact);
         let event = if report.begins {
             ContactEvent::begin_with(contact, Touching::on(surface), sample)
@@ -105,8 +113,24 @@ fn told(stroke: &Stroke, wraps: bool) -> Vec<Contradiction> {
             ContactEvent::moved(contact, sample)
         };
         scene.report(report.t, event).unwrap();
+        also(&mut scene, report.t);
     }
-    contradictions(&scene)
+    scene
+}
+
+/// What is told that no single report shows: times that stand, forces and blows.
+fn habits(scene: &Scene) -> Vec<SilentBecause> {
+    let mut told = scene.why_silent();
+    told.retain(|reason| {
+        matches!(
+            reason,
+            SilentBecause::TimeStands { .. }
+                | SilentBecause::PressedTooHard { .. }
+                | SilentBecause::StruckEveryStep { .. }
+                | SilentBecause::NeverPressed
+        )
+    });
+    told
 }
 
 fn contradictions(scene: &Scene) -> Vec<Contradiction> {
@@ -305,12 +329,92 @@ fn a_right_log_is_not_called_a_contradiction() {
             }
             _ => {}
         }
-        let told = told(&stroke, wraps);
-        if !told.is_empty() {
-            alarms.push(format!("{number}, {kind}: {told:?} of {:?}", stroke.size_m));
+        // Blows beside it: a drum roll, hail, a few at once as a pile falls, or none.
+        let mut body = None;
+        let roll_hz = between(&mut rng, 5.0, 32.0);
+        let mut due_s = 0.0;
+        let scene = reported(&stroke, wraps, |scene, t| {
+            let stock = || Body::stock(Stock::Plate, Material::WOOD, 0.2).unwrap();
+            let body = *body.get_or_insert_with(|| scene.add_body(stock()).unwrap());
+            let count = match number % 4 {
+                0 if t >= due_s => 1,
+                1 => (-rng.uniform().ln() * 1.5) as u32,
+                2 if rng.uniform() < 0.05 => 12,
+                _ => 0,
+            };
+            if count > 0 {
+                due_s += 1.0 / roll_hz;
+            }
+            for _ in 0..count {
+                scene.report(t, ContactEvent::Impact(Impact::on(body))).unwrap();
+            }
+        });
+        let told = contradictions(&scene);
+        let habits = habits(&scene);
+        if !told.is_empty() || !habits.is_empty() {
+            alarms.push(format!("{number}, {kind}: {told:?} {habits:?} of {:?}", stroke.size_m));
         }
     }
     assert!(alarms.is_empty(), "{} false alarms\n{}", alarms.len(), alarms.join("\n"));
+}
+
+#[test]
+fn a_time_that_stands_a_force_in_millinewtons_and_a_blow_at_every_step_are_told() {
+    let mut rng = Rng::new(60);
+    for kind in MOTIONS {
+        for _ in 0..8 {
+            let whole = stroke(kind, &mut rng);
+            // What a game reports at every frame, between 50 and 120 times a second.
+            let step_s = 1.0 / between(&mut rng, 50.0, 120.0);
+            let with = |change: fn(&mut Report)| {
+                let mut spoilt = whole.clone();
+                for (i, report) in spoilt.reports.iter_mut().enumerate() {
+                    report.t = i as f64 * step_s;
+                    change(report);
+                }
+                spoilt
+            };
+            let silent = |_: &mut Scene, _: f64| ();
+            let stands = habits(&reported(&with(|report| report.t = 0.0), true, silent));
+            assert!(matches!(stands[..], [SilentBecause::TimeStands { time_s: 0.0, .. }]), "{stands:?}");
+            // A light touch in millinewtons is what a finger presses with; 0.3 N and more are told.
+            let pressed = with(|report| report.force_n = 1e3 * report.force_n.max(0.3));
+            let pressed = habits(&reported(&pressed, true, silent));
+            assert!(matches!(pressed[..], [SilentBecause::PressedTooHard { .. }]), "{pressed:?}");
+            let unpressed = habits(&reported(&with(|report| report.force_n = 0.0), true, silent));
+            assert_eq!(unpressed, [SilentBecause::NeverPressed]);
+            let mut body = None;
+            let struck = reported(&with(|_| ()), true, |scene, t| {
+                let stock = || Body::stock(Stock::Plate, Material::WOOD, 0.2).unwrap();
+                let body = *body.get_or_insert_with(|| scene.add_body(stock()).unwrap());
+                scene.report(t, ContactEvent::Impact(Impact::on(body))).unwrap();
+            });
+            let struck = habits(&struck);
+            let steps = whole.reports.len() as u64;
+            let expected = (steps >= 30).then_some(SilentBecause::StruckEveryStep { count: steps });
+            assert_eq!(struck, expected.into_iter().collect::<Vec<_>>());
+        }
+    }
+}
+
+#[test]
+fn a_heavy_thing_with_a_probe_of_its_own_presses_as_hard_as_it_likes() {
+    let Engine { mut scene, .. } = Config::default().build().unwrap();
+    let surface = scene.add_surface(Surface::flat(4.0, 4.0).unwrap()).unwrap();
+    for (number, name) in ["rigid", "sole"].into_iter().enumerate() {
+        let probe = scene.add_probe(probe_by_name(name).unwrap()).unwrap();
+        let contact = ContactId(number as u64);
+        for step in 0..60 {
+            let t = f64::from(step) / 60.0;
+            let sample = ContactSample::new([0.1 + 0.02 * t, 0.5], 900.0).sliding([0.08, 0.0]);
+            let event = match step {
+                0 => ContactEvent::begin_with(contact, Touching::on(surface).with(probe), sample),
+                _ => ContactEvent::moved(contact, sample),
+            };
+            scene.report(number as f64 + t, event).unwrap();
+        }
+    }
+    assert_eq!(habits(&scene), []);
 }
 
 #[test]
@@ -357,7 +461,7 @@ fn measured(rows: impl Iterator<Item = (f64, f64, [f64; 2], [f64; 2])>) -> Strok
             shift_s = reports.last().map_or(0.0, |last| last.t + 1.0) - t;
         }
         let uv = [0, 1].map(|c| place_m[c] / size_m[c]);
-        reports.push(Report { t: t + shift_s, contact: 1, uv, velocity_m_s, begins });
+        reports.push(Report { t: t + shift_s, contact: 1, uv, velocity_m_s, force_n: 0.5, begins });
     }
     Stroke { size_m, reports }
 }

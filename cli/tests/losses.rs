@@ -79,6 +79,23 @@ fn voices_that_were_stolen_are_told() {
 }
 
 #[test]
+fn a_force_in_millinewtons_a_time_that_stands_and_a_blow_at_every_step_are_told() {
+    let heavy = stroke(1, 0.5).replace("\"normal_force_n\":0.6", "\"normal_force_n\":600");
+    assert_says(
+        &said(TOML, &heavy),
+        &["30 reports press a finger or a light tool with 600 N", "is it in mN, or in grams?"],
+    );
+    let at_once = |line: &str| format!("{{\"t\":0,{}\n", line.split_once(',').unwrap().1);
+    let stands: String = stroke(1, 0.5).lines().map(at_once).collect();
+    assert_says(&said(TOML, &stands), &["29 reports came at one time, 0 s", "goes on from step to step"]);
+    let every: String = (0..40).map(|step| impact(f64::from(step) / 60.0)).collect();
+    assert_says(
+        &said(TOML, &every),
+        &["40 impacts in a row struck one body", "\"begin\", moves and \"end\""],
+    );
+}
+
+#[test]
 fn a_file_of_silence_is_explained() {
     let mute = format!("{TOML}\n[audio]\ngain = 0.0\n");
     assert_says(

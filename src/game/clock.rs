@@ -45,6 +45,10 @@ pub(crate) struct Clock {
     stands: Stands,
     /// Stamps of strikes that wait, or that the audio has just come to.
     waiting: VecDeque<Stamp>,
+    /// Game time of the newest report, s, and where the audio was.
+    newest: (f64, f64),
+    /// Game time of the newest strike, s, and the sample that it sounds at.
+    struck: Option<(f64, f64)>,
 }
 
 /// Place of the audio, and since when.
@@ -79,6 +83,8 @@ impl Clock {
             stale_before: 0,
             stands: Stands::UNKNOWN,
             waiting: VecDeque::with_capacity(MOST_WAITING),
+            newest: (0.0, 0.0),
+            struck: None,
         }
     }
 
@@ -91,6 +97,7 @@ impl Clock {
         }
         let there = |stamp: Stamp| Stamp::at(stamp.samples() * ratio);
         self.waiting.iter_mut().for_each(|stamp| *stamp = there(*stamp));
+        self.struck = None;
         (self.sample_rate_hz, self.last) = (sample_rate_hz, there(self.last));
     }
 
@@ -114,6 +121,7 @@ impl Clock {
         self.epoch += 1;
         self.stale_before = self.epoch;
         self.waiting.clear();
+        self.struck = None;
     }
 
     /// Notes that a strike is sent.
@@ -121,6 +129,8 @@ impl Clock {
         if self.is_live() && self.waiting.back() != Some(&stamp) && self.waiting.len() < MOST_WAITING {
             self.waiting.push_back(stamp);
         }
+        let (time_s, position) = self.newest;
+        self.struck = Some((time_s, stamp.samples().max(position)));
     }
 
     /// Tests whether game time may run backwards.
@@ -166,11 +176,21 @@ impl Clock {
         }
     }
 
+    /// Sample that a strike due at `sample` is moved to, so that a game that catches up after a
+    /// hitch does not throw two strikes onto one; none where they are apart.
+    fn kept_apart(&self, time_s: f64, sample: f64, position: f64) -> Option<f64> {
+        let (before_s, sounds) = self.struck?;
+        let apart_s = ((time_s - before_s) / self.pace()).min(AFTER_TIE_S);
+        let apart = apart_s * self.sample_rate_hz;
+        (sample.max(position) - sounds < 0.5 * apart).then_some(sounds + apart)
+    }
+
     /// Sample of a game time, never before an earlier one; `position` is the next sample that the
-    /// audio half will render.
-    pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
+    /// audio half will render, and strikes keep their distance from each other.
+    pub(crate) fn stamp(&mut self, time_s: f64, position: u64, strikes: bool) -> Stamped {
+        self.newest = (time_s, position as f64);
         let target = time_s / self.pace() * self.sample_rate_hz;
-        let Followed { sample, jumped, repaced } = match &mut self.mapping {
+        let mut followed = match &mut self.mapping {
             Mapping::Exact(zero, _) => {
                 let zero = *zero.get_or_insert(position as f64 - target);
                 Followed { sample: target + zero, jumped: false, repaced: false }
@@ -196,6 +216,14 @@ impl Clock {
                 }
             }
         };
+        if strikes
+            && let Some(sample) = self.kept_apart(time_s, followed.sample, position as f64)
+            && let Mapping::Live(live) = &mut self.mapping
+        {
+            live.tie(time_s, sample, false);
+            (followed.sample, followed.jumped) = (sample, true);
+        }
+        let Followed { sample, jumped, repaced } = followed;
         if jumped {
             // Stamps already sent may lie ahead of the audio; events must stay in order.
             self.last = self.last.min(Stamp::at(sample));
@@ -229,7 +257,7 @@ mod tests {
     fn offline_a_stamp_is_its_own_sample() {
         let mut clock = Clock::new(ClockMode::Exact, 44_100.0);
         for (t, sample, fraction) in [(0.0, 0, 0.0), (0.0167, 736, 120.0 / 256.0), (1.0, 44_100, 0.0)] {
-            let stamp = clock.stamp(t, 0).stamp;
+            let stamp = clock.stamp(t, 0, false).stamp;
             assert_eq!((stamp.sample(), stamp.fraction()), (sample, fraction));
         }
     }
@@ -240,7 +268,10 @@ mod tests {
         for rate in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
             for _ in 0..10_000 {
                 let stamp = Stamp::at(1e9 * rng.uniform());
-                assert_eq!(Clock::new(ClockMode::Exact, rate).stamp(stamp.samples() / rate, 0).stamp, stamp);
+                assert_eq!(
+                    Clock::new(ClockMode::Exact, rate).stamp(stamp.samples() / rate, 0, false).stamp,
+                    stamp
+                );
             }
         }
     }
@@ -249,7 +280,7 @@ mod tests {
     fn live_the_first_event_holds_at_the_next_sample() {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
         assert_eq!(
-            clock.stamp(1234.5, 960),
+            clock.stamp(1234.5, 960, false),
             Stamped { stamp: Stamp::at(960.0), jumped: false, repaced: false }
         );
     }
@@ -257,10 +288,10 @@ mod tests {
     #[test]
     fn live_stamps_keep_their_distance_although_they_arrive_in_bursts() {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
-        let first = clock.stamp(10.0, 0).stamp.sample();
+        let first = clock.stamp(10.0, 0, false).stamp.sample();
         // Two physics steps reported together, half a step late.
-        let second = clock.stamp(10.0 + 1.0 / 60.0, 1200).stamp.sample();
-        let third = clock.stamp(10.0 + 2.0 / 60.0, 1200).stamp.sample();
+        let second = clock.stamp(10.0 + 1.0 / 60.0, 1200, false).stamp.sample();
+        let third = clock.stamp(10.0 + 2.0 / 60.0, 1200, false).stamp.sample();
         assert!((second - first).abs_diff(800) <= 1);
         assert!((third - second).abs_diff(800) <= 21);
     }
@@ -272,7 +303,7 @@ mod tests {
         for step in 0..20_000u64 {
             let game_s = step as f64 / 60.0;
             let position = (game_s * 48_000.0 * 1.0002) as u64;
-            let lead = clock.stamp(game_s, position).stamp.samples() - position as f64;
+            let lead = clock.stamp(game_s, position, false).stamp.samples() - position as f64;
             worst = worst.max(lead.abs());
         }
         assert!(worst < 48.0, "{worst} samples");
@@ -286,7 +317,7 @@ mod tests {
         let leads = (0..frames)
             .map(|frame| {
                 let position = frame * 800 / 256 * 256;
-                let stamped = clock.stamp(7.0 + pace * frame as f64 / 60.0, position);
+                let stamped = clock.stamp(7.0 + pace * frame as f64 / 60.0, position, false);
                 jumps += usize::from(stamped.jumped);
                 stamped.stamp.samples() - position as f64
             })
@@ -311,7 +342,7 @@ mod tests {
         let mut last = 0.0;
         for tick in 0..800u64 {
             let position = (tick / 8 * 8 * 800) / 256 * 256;
-            let stamped = clock.stamp(tick as f64 / 60.0, position);
+            let stamped = clock.stamp(tick as f64 / 60.0, position, false);
             let now = stamped.stamp.samples();
             assert!(!stamped.jumped && !stamped.repaced, "tick {tick}");
             assert!(tick == 0 || (now - last - 800.0).abs() < 260.0, "tick {tick}: {}", now - last);
@@ -322,19 +353,36 @@ mod tests {
     #[test]
     fn after_a_reset_the_next_stamp_holds_at_the_next_sample_and_the_rest_exactly() {
         let mut clock = Clock::new(ClockMode::Exact, 48_000.0);
-        clock.stamp(100.0, 0);
+        clock.stamp(100.0, 0, false);
         clock.reset(9_600);
-        assert_eq!(clock.stamp(0.0, 9_600).stamp, Stamp::whole(9_600));
-        assert_eq!(clock.stamp(0.5, 9_728).stamp, Stamp::whole(33_600));
+        assert_eq!(clock.stamp(0.0, 9_600, false).stamp, Stamp::whole(9_600));
+        assert_eq!(clock.stamp(0.5, 9_728, false).stamp, Stamp::whole(33_600));
+    }
+
+    #[test]
+    fn live_strikes_that_come_late_and_at_once_keep_their_distance() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        for tick in 0..60u64 {
+            clock.stamp(tick as f64 / 60.0, tick * 800, false);
+        }
+        // Three ticks late, and all at once.
+        let at = |clock: &mut Clock, tick: u64| {
+            let stamp = clock.stamp(tick as f64 / 60.0, 50_400, true).stamp;
+            clock.note_strike(stamp);
+            stamp.samples().max(50_400.0)
+        };
+        let sounds = [60, 62, 63].map(|tick| at(&mut clock, tick));
+        assert!(sounds[0] == 50_400.0 && (sounds[1] - sounds[0] - 1600.0).abs() < 1.0, "{sounds:?}");
+        assert!((sounds[2] - sounds[1] - 800.0).abs() < 1.0, "{sounds:?}");
     }
 
     #[test]
     fn live_a_game_that_stalls_or_skips_is_tied_anew_and_stays_in_order() {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
-        clock.stamp(0.0, 0);
+        clock.stamp(0.0, 0, false);
         let tied = |sample| Stamped { stamp: Stamp::at(sample), jumped: true, repaced: false };
-        assert_eq!(clock.stamp(0.01, 96_000), tied(96_000.0));
-        assert_eq!(clock.stamp(500.0, 96_064), tied(96_064.0));
-        assert_eq!(clock.stamp(0.0, 96_128), tied(96_128.0));
+        assert_eq!(clock.stamp(0.01, 96_000, false), tied(96_000.0));
+        assert_eq!(clock.stamp(500.0, 96_064, false), tied(96_064.0));
+        assert_eq!(clock.stamp(0.0, 96_128, false), tied(96_128.0));
     }
 }

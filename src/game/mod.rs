@@ -8,4 +8,5 @@ pub(crate) mod places;
 pub(crate) mod recording;
 pub(crate) mod scene;
 pub(crate) mod silence;
+pub(crate) mod slips;
 pub(crate) mod tip;

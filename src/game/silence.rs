@@ -6,6 +6,7 @@
 //! sounds as well.
 
 use crate::game::contradiction::Contradiction;
+use crate::game::slips::Slips;
 use crate::link::stats::Stats;
 use crate::model::config::Config;
 use crate::model::error::Refusal;
@@ -156,6 +157,37 @@ pub enum SilentBecause {
     /// The reports of a surface contradict themselves: something sounds, and not what was meant.
     #[error("{0}")]
     Contradicts(Contradiction),
+    /// Moves or impacts are told at one and the same time.
+    #[error(
+        "{count} reports came at one time, {time_s} s, as if nothing had moved in it; report each with the game's time in \
+         seconds, which goes on from step to step"
+    )]
+    TimeStands {
+        /// Number of reports after the first.
+        count: u64,
+        /// The time, s.
+        time_s: f64,
+    },
+    /// A finger or a light tool presses as nothing light does.
+    #[error(
+        "{count} reports press a finger or a light tool with {force_n:.0} N in the mean; normal_force_n is in newtons: is it in mN, or \
+         in grams? what is heavy needs a probe such as \"rigid\" or \"sole\""
+    )]
+    PressedTooHard {
+        /// Number of reports.
+        count: u64,
+        /// Mean force of them, N.
+        force_n: f64,
+    },
+    /// Impacts come at every step of the game.
+    #[error(
+        "{count} impacts in a row struck one body, one at every step; report an \"impact\" once, where a thing lands, and \"begin\", moves \
+         and \"end\" while it touches"
+    )]
+    StruckEveryStep {
+        /// Number of steps.
+        count: u64,
+    },
     /// The audio gain is zero.
     #[error("the audio gain is 0; raise gain under [audio], AudioBus::gain")]
     AudioGainZero,
@@ -191,12 +223,21 @@ pub(crate) struct Reported {
     landed: bool,
     first_uv: Option<[f64; 2]>,
     moved: bool,
+    slips: Slips,
 }
 
 impl Reported {
-    /// An event was sent; `rings` if what it touches has modes.
-    pub(crate) fn accept(&mut self, event: &ContactEvent, stamp: Stamp, rings: bool) {
+    /// An event of game time `time_s` was sent; `rings` if what it touches has modes, `is_light` if
+    /// it begins with a finger or a light tool.
+    pub(crate) fn accept(
+        &mut self,
+        event: &ContactEvent,
+        (time_s, stamp): (f64, Stamp),
+        rings: bool,
+        is_light: bool,
+    ) {
         self.accepted += 1;
+        self.slips.note(time_s, event, is_light);
         self.newest = self.newest.max(stamp);
         self.ringing += u64::from(rings);
         match event {
@@ -243,9 +284,14 @@ impl Reported {
         say(stats.limiter_db > LIMITED_DB, SilentBecause::TurnedDown { by_db: stats.limiter_db });
         say(config.audio.iter().all(|bus| bus.gain == 0.0), SilentBecause::AudioGainZero);
         say(self.contacts + self.impacts > 0 && self.ringing == 0, SilentBecause::NothingRings);
+        say(self.contacts > 0 && !self.pressed, SilentBecause::NeverPressed);
         let strokes_only = self.contacts > 0 && self.impacts == 0;
-        say(strokes_only && !self.pressed, SilentBecause::NeverPressed);
         say(strokes_only && !self.moved && !self.landed, SilentBecause::NeverMoved);
+        let Self { slips, .. } = self;
+        because.extend(slips.stands().map(|(count, time_s)| SilentBecause::TimeStands { count, time_s }));
+        let too_hard = slips.too_hard();
+        because.extend(too_hard.map(|(count, force_n)| SilentBecause::PressedTooHard { count, force_n }));
+        because.extend(slips.at_every_step().map(|count| SilentBecause::StruckEveryStep { count }));
         because
     }
 
@@ -295,6 +341,9 @@ impl SilentBecause {
             | Self::Stolen { count, .. }
             | Self::Quarantined { count }
             | Self::Held { count }
+            | Self::TimeStands { count, .. }
+            | Self::PressedTooHard { count, .. }
+            | Self::StruckEveryStep { count }
             | Self::Shortened { count, .. }
             | Self::Shed { count } => *count,
             Self::Contradicts(_) => 1,

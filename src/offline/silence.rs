@@ -179,12 +179,19 @@ impl Rendered<'_> {
 
     fn because(&self, but: &[SilentBecause], otherwise: &str) -> String {
         let counts = |reason: &&SilentBecause| {
+            use SilentBecause::{Contradicts, PressedTooHard, StruckEveryStep, TurnedDown};
             !but.contains(reason)
-                && !matches!(reason, SilentBecause::Contradicts(_) | SilentBecause::TurnedDown { .. })
+                && !matches!(
+                    reason,
+                    Contradicts(_) | TurnedDown { .. } | PressedTooHard { .. } | StruckEveryStep { .. }
+                )
         };
         let because = || self.render.why_silent.iter().filter(counts);
         // What was lost is told by itself.
-        let states = because().filter(|reason| reason.count() == 0);
+        let is_state = |reason: &&SilentBecause| {
+            reason.count() == 0 || matches!(reason, SilentBecause::TimeStands { .. })
+        };
+        let states = because().filter(is_state);
         let words: Vec<String> = states.map(|reason| self.in_words(reason)).collect();
         match words.as_slice() {
             [] if because().next().is_some() => "of what was refused or lost".to_owned(),

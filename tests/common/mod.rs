@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod exploration;
+pub mod game;
 pub mod plates;
 pub mod strokes;
 

@@ -10,9 +10,14 @@ use bevy_asperity::avian::{self, AvianTouchPlugin};
 use bevy_asperity::*;
 use common::*;
 
-fn world() -> (App, Entity) {
+fn with_physics() -> App {
     let mut app = app();
     app.add_plugins(TransformPlugin).add_plugins(PhysicsPlugins::default()).add_plugins(AvianTouchPlugin);
+    app
+}
+
+fn world() -> (App, Entity) {
+    let mut app = with_physics();
     let plate = plate(&mut app);
     app.world_mut().entity_mut(plate).insert((
         RigidBody::Static,
@@ -162,4 +167,32 @@ fn a_plate_despawned_under_a_sliding_block_is_no_panic() {
     }
     app.world_mut().despawn(plate);
     run(&mut app);
+}
+
+#[test]
+fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_hand() {
+    let levels_db = PLACES_M.map(|[x, z]| {
+        let mut app = with_physics();
+        app.world_mut().spawn((
+            TouchBody(shaped_plate()),
+            RigidBody::Static,
+            Collider::cuboid(1.0, 0.02, 1.0),
+            Transform::default(),
+            TouchThing::of(Material::STEEL),
+        ));
+        app.finish();
+        app.cleanup();
+        touch(&mut app).start_recording();
+        app.world_mut().spawn((
+            RigidBody::Dynamic,
+            Collider::sphere(0.02),
+            ColliderDensity(1500.0),
+            Transform::from_xyz(x, 0.2, z),
+            LinearVelocity(Vec3::new(0.0, -2.0, 0.0)),
+            TouchThing::of(Material::STEEL),
+        ));
+        run(&mut app);
+        assert_sounds_as_told_at(&mut app, [x, z])
+    });
+    assert!(levels_db[3] - levels_db[0] > 3.0, "places differ: {levels_db:?}");
 }

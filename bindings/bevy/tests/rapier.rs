@@ -10,12 +10,17 @@ use bevy_asperity::*;
 use bevy_rapier3d::prelude::*;
 use common::*;
 
-fn world() -> (App, Entity) {
+fn with_physics() -> App {
     let mut app = app();
     app.add_plugins(TransformPlugin)
         .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
         .insert_resource(TimestepMode::Fixed { dt: STEP.as_secs_f32(), substeps: 1 })
         .add_plugins(RapierTouchPlugin);
+    app
+}
+
+fn world() -> (App, Entity) {
+    let mut app = with_physics();
     let plate = plate(&mut app);
     app.world_mut().entity_mut(plate).insert((
         RigidBody::Fixed,
@@ -111,4 +116,30 @@ fn a_plate_despawned_under_a_sliding_block_is_no_panic() {
     }
     app.world_mut().despawn(plate);
     run(&mut app);
+}
+
+#[test]
+fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_hand() {
+    let levels_db = PLACES_M.map(|[x, z]| {
+        let mut app = with_physics();
+        app.world_mut().spawn((
+            TouchBody(shaped_plate()),
+            RigidBody::Fixed,
+            Collider::cuboid(0.5, 0.01, 0.5),
+            Transform::default(),
+            TouchThing::of(Material::STEEL),
+        ));
+        touch(&mut app).start_recording();
+        app.world_mut().spawn((
+            RigidBody::Dynamic,
+            Collider::ball(0.02),
+            ColliderMassProperties::Density(1500.0),
+            Transform::from_xyz(x, 0.2, z),
+            Velocity::linear(Vec3::new(0.0, -2.0, 0.0)),
+            TouchThing::of(Material::STEEL),
+        ));
+        run(&mut app);
+        assert_sounds_as_told_at(&mut app, [x, z])
+    });
+    assert!(levels_db[3] - levels_db[0] > 3.0, "places differ: {levels_db:?}");
 }

@@ -1,5 +1,7 @@
 // The components and the sample, driven as Unity drives them: a second of physics steps, each with a block of audio.
 using System;
+using System.Collections.Generic;
+using System.Globalization;
 using Asperity;
 using UnityEngine;
 
@@ -12,9 +14,13 @@ static class UnityScene
         Environment.Exit(1);
     }
 
+    /// <summary>Energy of the second that was rendered last.</summary>
+    static double energy;
+
     static float Second(Action<int> between)
     {
         float peak = 0f;
+        energy = 0;
         for (int step = 0; step < 50; step++)
         {
             Time.fixedTimeAsDouble += 0.02;
@@ -22,11 +28,79 @@ static class UnityScene
             Messages.SendAll("FixedUpdate");
             var block = new float[2 * 960];
             Messages.SendAll("OnAudioFilterRead", block, 2);
-            foreach (var x in block) peak = Math.Max(peak, Math.Abs(x));
+            foreach (var x in block) { peak = Math.Max(peak, Math.Abs(x)); energy += (double)x * x; }
             Messages.SendAll("Update");
             Messages.SendAll("OnGUI");
         }
         return peak;
+    }
+
+    /// <summary>Modes of a plate of 1 m by 2 cm by 1 m whose upper face moves as cosines, in its own frame.</summary>
+    static string ShapedPlate()
+    {
+        const int side = 17;
+        Func<double, string> number = x => x.ToString("R", CultureInfo.InvariantCulture);
+        var points = new List<string>();
+        var triangles = new List<string>();
+        var modes = new List<string>();
+        var gains = new List<string>();
+        var motions = new List<string>();
+        for (int i = 0; i < side * side; i++)
+        {
+            points.Add("[" + number(i / side / 16.0 - 0.5) + ",0.01," + number(i % side / 16.0 - 0.5) + "]");
+            if (i % side == side - 1 || i / side == side - 1) continue;
+            triangles.Add("[" + i + "," + (i + 1) + "," + (i + side) + "]");
+            triangles.Add("[" + (i + 1) + "," + (i + side + 1) + "," + (i + side) + "]");
+        }
+        foreach (var order in new[] { new[] { 1, 0 }, new[] { 0, 2 }, new[] { 1, 1 }, new[] { 2, 2 }, new[] { 3, 1 } })
+        {
+            var moves = new List<string>();
+            for (int i = 0; i < side * side; i++)
+                moves.Add("[0," + number(Math.Cos(Math.PI * order[0] * (i / side) / 16) * Math.Cos(Math.PI * order[1] * (i % side) / 16)) + ",0]");
+            modes.Add("{\"frequency_hz\":" + (300 + 210 * modes.Count) + ",\"decay_per_s\":20,\"amplitude\":1}");
+            gains.Add("1");
+            motions.Add("[" + string.Join(",", moves) + "]");
+        }
+        return "{\"format\":\"asperity.modes\",\"version\":2,\"unit\":\"relative\",\"modes\":[" + string.Join(",", modes) +
+            "],\"shapes\":{\"points_m\":[" + string.Join(",", points) + "],\"triangles\":[" + string.Join(",", triangles) + "],\"gains\":[" +
+            string.Join(",", gains) + "],\"phi_per_sqrt_kg\":[" + string.Join(",", motions) + "],\"struck_point\":0}}";
+    }
+
+    /// <summary>A plate on end, struck in the middle, at an edge and at a corner, sounds as it does with its place told by hand.</summary>
+    static void StruckPlaces(AsperityWorld world)
+    {
+        var on = new GameObject("Plate on end");
+        on.transform.position = new Vector3(1, 2, 3);
+        on.transform.right = new Vector3(0, 1, 0);
+        on.transform.up = new Vector3(-1, 0, 0);
+        var plate = on.AddComponent<AsperityBody>();
+        plate.ModesJson = new TextAsset(ShapedPlate());
+        Messages.Send(plate, "Start");
+        var levels = new List<double>();
+        foreach (var at in new[] { new Vector3(0, 0.01f, 0), new Vector3(0.4f, 0.01f, 0), new Vector3(0.21f, 0.01f, -0.37f), new Vector3(0.45f, 0.01f, 0.45f) })
+        {
+            var both = new double[2];
+            for (int byHand = 0; byHand < 2; byHand++)
+            {
+                // In the world its own x points up, and its own y to the left.
+                var hits = new Collision { impulse = new Vector3(-0.01f, 0, 0), relativeVelocity = new Vector3(1f, 0, 0), Normal = new Vector3(-1, 0, 0) };
+                hits.Point = on.transform.position + new Vector3(-at.y, at.x, at.z);
+                var told = Asperity.Event.Collision(plate.Body, 0.01, 1.0, 0.5);
+                told.AtX = at.x; told.AtY = at.y; told.AtZ = at.z;
+                Second(step =>
+                {
+                    if (step != 5) return;
+                    if (byHand == 0) Messages.Send(plate, "OnCollisionEnter", hits); else world.Report(told);
+                });
+                both[byHand] = 10 * Math.Log10(energy);
+                Second(step => { });
+            }
+            Console.WriteLine("struck at ({0}, {1}) m: {2:f3} dB, by hand {3:f3}", at.x, at.z, both[0], both[1]);
+            Must(Math.Abs(both[0] - both[1]) < 0.1, "a blow sounds as told by hand: " + both[0] + " dB beside " + both[1]);
+            levels.Add(both[1]);
+        }
+        Must(levels[3] - levels[0] > 3, "places differ: " + levels[0] + " and " + levels[3] + " dB");
+        Messages.Send(plate, "OnDestroy");
     }
 
     static void Main()
@@ -106,6 +180,8 @@ static class UnityScene
         float ridden = slides(new Vector3(0.5f, 0, 0), new Vector3(0, 1, 0));
         Must(ridden < 0.01f * above, "what rides on a belt is silent: " + ridden + " beside " + above);
         plate.BeltMS = new Vector3();
+        StruckPlaces(world);
+        Must(world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
         Physics.Ground = plate.GetComponent<Collider>();
 
         // With a mixer the world leaves its own object silent and tells the effect which engine is its.

@@ -137,7 +137,12 @@ namespace UnityEngine
         public Vector3 Point, Normal = new Vector3(0, 1, 0);
         public ContactPoint GetContact(int index) { return new ContactPoint { point = Point, normal = Normal }; }
     }
-    public class TextAsset : Object { public string text { get { return ""; } } }
+    public class TextAsset : Object
+    {
+        readonly string held;
+        public TextAsset(string text) { held = text; }
+        public string text { get { return held; } }
+    }
     [AttributeUsage(AttributeTargets.Field)] public class TooltipAttribute : Attribute { public TooltipAttribute(string words) { } }
     [AttributeUsage(AttributeTargets.Class)] public class RequireComponent : Attribute { public RequireComponent(Type type) { } }
     [AttributeUsage(AttributeTargets.Field)] public class TextAreaAttribute : Attribute { }

@@ -16,15 +16,15 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Most of a key that is meant, and units that it may have been written in, in its own.
-type Usual = (&'static str, f64, [(&'static str, f64); 2]);
+type Usual = (&'static str, f64, &'static [(&'static str, f64)]);
 const USUAL: [Usual; 7] = [
-    ("force_n", 30.0, [("grams", 9.81e-3), ("millinewtons", 1e-3)]),
-    ("speed_m_s", 3.0, [("mm/s", 1e-3), ("cm/s", 1e-2)]),
-    ("duration_s", 60.0, [("milliseconds", 1e-3), ("milliseconds", 1e-3)]),
-    ("size_m", 5.0, [("centimetres", 1e-2), ("millimetres", 1e-3)]),
-    ("width_m", 5.0, [("millimetres", 1e-3), ("centimetres", 1e-2)]),
-    ("height_m", 5.0, [("millimetres", 1e-3), ("centimetres", 1e-2)]),
-    ("relief_m", 0.05, [("millimetres", 1e-3), ("micrometres", 1e-6)]),
+    ("force_n", 30.0, &[("grams", 9.81e-3), ("millinewtons", 1e-3)]),
+    ("speed_m_s", 3.0, &[("mm/s", 1e-3), ("cm/s", 1e-2)]),
+    ("duration_s", 60.0, &[("milliseconds", 1e-3)]),
+    ("size_m", 5.0, &[("centimetres", 1e-2), ("millimetres", 1e-3)]),
+    ("width_m", 5.0, &[("millimetres", 1e-3), ("centimetres", 1e-2)]),
+    ("height_m", 5.0, &[("millimetres", 1e-3), ("centimetres", 1e-2)]),
+    ("relief_m", 0.05, &[("millimetres", 1e-3), ("micrometres", 1e-6)]),
 ];
 
 /// Doubts about a specification whose every draw can be used.

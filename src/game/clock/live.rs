@@ -11,6 +11,7 @@
 //! | reports again and again while it stands | stamps that are the same | nothing |
 //! | pauses, restarts at 0, skips, stamps one event wrongly | a stamp and the audio part by more than [`BREAK_S`] | tied anew, counted |
 //! | hitches, and catches up in a burst | a stamp that comes more than [`LATE_S`] late | tied anew, counted: the burst keeps its distances |
+//! | … by less, or by more, with strikes among it | two strikes that would sound on one sample | tied anew, counted: they keep their distance |
 //! | goes on while the audio stands still | reports of more than [`BREAK_S`] at one position | tied anew each 0.1 s, counted; strikes from before a tie are dropped |
 //! | runs ahead of the audio for good, as after a shorter gap | no stamp within a window comes close | its time runs faster by [`HURRY`] until one does |
 //! | runs in slow motion or fast | the smallest lead drifts by the same share in window after window | its pace is followed, counted |

@@ -19,6 +19,9 @@ use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
 use std::sync::atomic::Ordering::Relaxed;
 
+/// Mass behind a probe below which it is a finger, or a tool that is held lightly, kg.
+const LIGHT_KG: f64 = 0.5;
+
 impl Scene {
     /// Reports what a contact did at game time `time_s`. Returns at once.
     ///
@@ -69,7 +72,7 @@ impl Scene {
         self.note_touch(&told);
         let position = self.counters.position.load(Relaxed);
         self.settle_recording(position);
-        let stamped = self.clock.stamp(time_s, position);
+        let stamped = self.clock.stamp(time_s, position, matches!(event, ContactEvent::Impact(_)));
         self.show_epochs();
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
@@ -89,7 +92,8 @@ impl Scene {
         self.strongest.note(&levelled, touched);
         let sent = self.spun(stamp.sample() as f64 / self.config.inner_rate_hz(), levelled);
         self.send_stamped(stamp, sent)?;
-        self.reported.accept(&sent, stamp, self.rings(&sent));
+        let (rings, is_light) = (self.rings(&sent), self.is_light(&sent));
+        self.reported.accept(&sent, (time_s, stamp), rings, is_light);
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
         self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {
@@ -118,6 +122,14 @@ impl Scene {
             self.sounded.insert(impact.body, (now, impulse));
         }
         too_soon
+    }
+
+    /// Tests whether a contact begins with a finger, or with a tool that a hand holds lightly.
+    fn is_light(&self, event: &ContactEvent) -> bool {
+        let ContactEvent::Begin { touching, .. } = event else { return false };
+        let own = || Some(&self.config.probe);
+        let probe = touching.probe.map_or_else(own, |id| self.probes.get(id.0));
+        probe.is_some_and(|probe| probe.finger_mass_kg < LIGHT_KG)
     }
 
     /// Tests whether what an event touches has modes.

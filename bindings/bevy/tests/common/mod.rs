@@ -5,7 +5,7 @@
 
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Names};
 use asperity::offline::{self, Options, Render};
-use asperity::{Body, Config, ContactSample, Engine, Material, Stock, Surface};
+use asperity::{Body, Config, ContactSample, Engine, Material, ModalModel, Stock, Surface};
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_asperity::*;
@@ -108,6 +108,68 @@ pub fn assert_same_bits(app: &mut App, plates: usize) -> ContactLog {
     assert!(peaks[0] > 1e-6, "silence");
     assert!(peaks.iter().all(|peak| *peak <= 1.0), "beyond full scale: {peaks:?}");
     log
+}
+
+/// A plate of 1 m by 2 cm by 1 m whose upper face moves as cosines, in its own frame.
+pub fn shaped_plate() -> Body {
+    const SIDE: usize = 17;
+    let across = |i: usize| i as f64 / (SIDE - 1) as f64 - 0.5;
+    let points: Vec<[f64; 3]> =
+        (0..SIDE * SIDE).map(|at| [across(at / SIDE), 0.01, across(at % SIDE)]).collect();
+    let squares = (0..SIDE * (SIDE - 1)).filter(|at| at % SIDE != SIDE - 1);
+    let triangles: Vec<[usize; 3]> =
+        squares.flat_map(|a| [[a, a + 1, a + SIDE], [a + 1, a + SIDE + 1, a + SIDE]]).collect();
+    let turn = std::f64::consts::PI;
+    let mut modes = Vec::new();
+    let mut motions = Vec::new();
+    for (m, (a, b)) in [(1.0, 0.0), (0.0, 2.0), (1.0, 1.0), (2.0, 2.0), (3.0, 1.0)].into_iter().enumerate() {
+        let hz = 300.0 * (1.0 + 0.7 * m as f64);
+        modes.push(format!(r#"{{"frequency_hz": {hz:?}, "decay_per_s": 5.0, "amplitude": 1.0}}"#));
+        let moves = |x: f64, z: f64| (turn * a * (x + 0.5)).cos() * (turn * b * (z + 0.5)).cos();
+        motions.push(points.iter().map(|[x, _, z]| [0.0, moves(*x, *z), 0.0]).collect::<Vec<_>>());
+    }
+    let file = format!(
+        r#"{{"format": "asperity.modes", "version": 2, "unit": "relative", "modes": [{}], "shapes": {{
+            "points_m": {points:?}, "triangles": {triangles:?}, "gains": {:?},
+            "phi_per_sqrt_kg": {motions:?}, "struck_point": 0}}}}"#,
+        modes.join(","),
+        vec![1.0; modes.len()],
+    );
+    ModalModel::parse(&file).unwrap().into()
+}
+
+/// Places of a [`shaped_plate`] that sound apart, x and z, m: the last is the loudest.
+pub const PLACES_M: [[f32; 2]; 4] = [[0.0, 0.0], [0.4, 0.0], [0.21, -0.37], [0.45, 0.45]];
+
+/// The one blow of an app on its one body, a [`shaped_plate`], is as loud as the same blow with its
+/// place told by hand; its level, dB.
+pub fn assert_sounds_as_told_at(app: &mut App, [x, z]: [f32; 2]) -> f64 {
+    let mut log = touch(app).stop_recording();
+    let blow = log.lines.iter().position(|line| matches!(line.event, LogEvent::Impact { .. })).unwrap();
+    log.lines = vec![log.lines.swap_remove(blow)];
+    let LogEvent::Impact { at_m, direction, .. } = &mut log.lines[0].event else { unreachable!() };
+    assert!(at_m.is_some(), "no place is told");
+    (*at_m, *direction) = (Some([f64::from(x), 0.01, f64::from(z)]), None);
+    let config = Config { clock: asperity::ClockMode::Exact, ..AsperityPlugin::default().config };
+    let Engine { mut scene, renderer, .. } = config.build().unwrap();
+    let plate = scene.add_body(shaped_plate()).unwrap();
+    let names = Names {
+        bodies: HashMap::from([("body 0".to_string(), plate)]),
+        surfaces: HashMap::new(),
+        probes: HashMap::new(),
+    };
+    let options = Options { tail_s: 1.0, ..Options::default() };
+    let by_hand = offline::render(scene, renderer, &log, &names, &options).unwrap();
+    let level_db = |sound: &[f32]| {
+        let begins = sound.iter().position(|x| x.abs() > 1e-3 * peak(sound)).unwrap();
+        let power: f64 = sound[begins..begins + 9600].iter().map(|x| f64::from(*x).powi(2)).sum();
+        10.0 * power.log10()
+    };
+    let told = level_db(&by_hand.audio[0]);
+    let heard = level_db(&app.world().resource::<NullOutput>().audio[0]);
+    println!("({x}, {z}) m: {heard:.3} dB, by hand {told:.3}");
+    assert!((heard - told).abs() < 0.1, "({x}, {z}) m: {heard} dB, by hand {told}");
+    heard
 }
 
 /// The blows of a recording: when, m/s, kg, m, rebound.
