@@ -4,7 +4,7 @@
 use crate::common;
 
 use asperity::{
-    Actuator, ActuatorSettings, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Impact,
+    ActuatorSettings, Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Impact,
     Material, SilentBecause, Stats, Stock,
 };
 use common::game::{Game, TICK_S, block};
@@ -308,7 +308,7 @@ fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
 #[test]
 fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_a_table_is_muted() {
     let mut game = Game::live();
-    let begin = ContactEvent::begin(ContactId(1), game.surface, Actuator(1), along(0.0, 0.1));
+    let begin = ContactEvent::begin(ContactId(1), game.surface, ChannelId(1), along(0.0, 0.1));
     let error = game.scene.report(0.0, begin).unwrap_err().to_string();
     assert!(error.contains('1'), "{error}");
     game.scene.set_haptic_gain(ChannelId(0), 0.0).unwrap();

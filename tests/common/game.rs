@@ -2,7 +2,7 @@
 
 use super::plate;
 use asperity::{
-    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Material, Renderer,
+    Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Material, Renderer,
     Scene, Stock, SurfaceId,
 };
 
@@ -36,7 +36,7 @@ impl Game {
     /// A report of a contact that the first actuator feels.
     pub fn touch(&mut self, contact: u64, sample: ContactSample, begins: bool) {
         let event = if begins {
-            ContactEvent::begin(ContactId(contact), self.surface, Actuator(0), sample)
+            ContactEvent::begin(ContactId(contact), self.surface, ChannelId(0), sample)
         } else {
             ContactEvent::moved(ContactId(contact), sample)
         };
