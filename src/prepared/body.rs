@@ -127,8 +127,8 @@ impl BodySlot {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
         let modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
-        // What nobody would miss comes last; between two levels what rings longest comes first, so
-        // that the groups still awake are the first ones.
+        // The least important come last; between two levels the longest to ring come first, so that
+        // the groups still awake are the first ones.
         let mut order = vec![Ranked::default(); modes.len()];
         let plain: Vec<Mode> = modes.iter().map(|(_, (mode, _))| *mode).collect();
         let levels = modal_bank::shedding_order(&plain, TYPICAL_IMPULSE_N_S, loudest_db_spl, &mut order);
