@@ -275,6 +275,11 @@ impl BodySeat {
         self.current.as_ref().map_or(0, |body| body.modes_that_ring(position))
     }
 
+    /// Modes that must be rung from `position` on, and how many of them can be spared.
+    pub(crate) fn modes_and_spared(&self, position: u64) -> (usize, usize) {
+        self.current.as_ref().map_or((0, 0), |body| body.modes_and_spared(position))
+    }
+
     /// Lends the body for a while; nothing may happen to it until it is [taken
     /// back](Self::take_back).
     pub(crate) fn lend(&mut self) -> Option<Box<BodySlot>> {

@@ -338,6 +338,13 @@ impl BodySlot {
         if self.is_silent(position) { 0 } else { modal_bank::LANES * self.bank.groups().max(1) }
     }
 
+    /// [`modes_that_ring`](Self::modes_that_ring), and how many of them a late machine leaves out.
+    pub(crate) fn modes_and_spared(&self, position: u64) -> (usize, usize) {
+        let kept = modal_bank::LANES * self.levels[MODE_LEVELS - 1];
+        let modes = self.modes_that_ring(position);
+        (modes, modes.saturating_sub(kept))
+    }
+
     /// [`render`](Self::render) without the first samples of strikes
     /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
     pub(crate) fn ring(&mut self, terms: Terms, out: &mut [f32]) -> usize {
