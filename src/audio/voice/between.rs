@@ -11,25 +11,7 @@
 //! m/s under 0.8 N pays on no roughness up to 0.8. A stroke of 0.1 m/s under 0.5 N on wood takes a
 //! tenth more where it is looked at midway; without, the demo's third octaves move by 0.007 dB in
 //! the median and 0.33 at most. Only for the integrator that knows events. Beginning anew costs
-//! three samples of cubic, hence the hysteresis.
-//!
-//! *Price.* Some 390 lines of code: this file, `dsp::micro_contact::bends`, two of the three kinds
-//! of `ExactEvent::run_on`, `CleanGround`, `ShortWaves` of the overlay. Gain: `light` −80 / −59 dB
-//! felt / heard, where midway alone leaves −50 / −37 and the cubic more.
-//!
-//! *Measured instead of it:* two or four steps a sample of everything from the path to the pad. Rms
-//! errors of the contact force on the named cases of `asperity report`, as one step with looks, two
-//! and four (which still look where they miss too much):
-//!
-//! | steps | time | smooth | bouncing | steep | fast |
-//! |---|---|---|---|---|---|
-//! | one | 1 | −106 | −80 | −71 | −61 dB |
-//! | two | 1.7 | −118 | −93 | −101 | −50 |
-//! | four | 2.4 | −131 | −105 | −113 | −74 |
-//!
-//! A look midway costs 200 instructions a sample of some 1400 (callgrind, AVX2), a step the map, all
-//! octaves and the pad once more; and where the ground passes fastest two steps miss more than looks
-//! do.
+//! three samples of cubic, hence the hysteresis. Its price: `dsp::micro_contact::Bends`.
 
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
