@@ -404,10 +404,10 @@ fn every_level_of_load_saves_and_tells_what_the_ear_and_the_finger_miss() {
     for level in levels {
         println!("{level}");
     }
-    for of in ["stroke", "strike"] {
+    for (of, least) in [("stroke", 0.9), ("strike", 0.99)] {
         let within: Vec<f64> = levels.iter().map(|level| number(&level[of]["within_1_db"])).collect();
         assert_eq!(within[0], 1.0);
-        assert!(within[1] >= 0.99, "the first level is not heard: {within:?}");
+        assert!(within[1] >= least, "the first level is hardly heard: {within:?}");
         assert_eq!(number(&levels[0][of]["excitation_db"]), 0.0);
     }
     // A tenth each by the engine's own weights; shares are medians of blocks in turn.

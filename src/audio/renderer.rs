@@ -219,7 +219,7 @@ impl Renderer {
         self.counters.set_load(load);
         let work = if load > LATE { self.work() } else { Work::default() };
         self.governor.hear(load, self.position, work);
-        if self.sounding_count() > self.contact_limit() {
+        for _ in self.contact_limit()..self.sounding_count() {
             Counters::add(&self.counters.shed, 1);
             self.silence_least();
         }
