@@ -6,22 +6,23 @@
 //! | modes | by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): those that nobody hears, with 6 dB of safety; at least two fifths of each body, where nothing is hidden by the model or those that would fall asleep first, whichever keeps more. They hear nothing more and ring out, without a click |
 //! | contacts | those of lowest priority, as many at a time as are a tenth of the cost; they fade, and a move revives them later |
 //!
-//! A level saves at least a tenth of the one before, or it is none. Modes are the first level where
-//! they save so much, beside contacts of [`MODES_A_CONTACT`] each; otherwise they go together with
-//! the first contacts. There are no more levels than there are contacts to take: an engine with
-//! four fingers comes back after three half seconds.
+//! A level saves at least a tenth of the one before, or it is none. Modes are the first level
+//! where they save so much, beside contacts of [`MODES_A_CONTACT`] each; otherwise they go
+//! together with the first contacts. There are no more levels than there are contacts to take: an
+//! engine with four fingers comes back after three half seconds.
 //!
 //! The order of modes is made when a body is added, for the level at which its loudest mode is
-//! heard: that of its bus ([`AudioBus::pascals_at_full_scale`](crate::AudioBus::pascals_at_full_scale)),
-//! or else 70 dB SPL. 4096 modes take a tenth of a second.
+//! heard: that of its bus
+//! ([`AudioBus::pascals_at_full_scale`](crate::AudioBus::pascals_at_full_scale)), or else 70 dB
+//! SPL. 4096 modes take a tenth of a second.
 //!
 //! Cost and gain: on measured tables of ceramic and wood modes leave 5 of 22 and 9 of 14 groups,
 //! and the ear's excitation is within 1 dB in every cell of an ERB and 20 ms
-//! (`cli/tests/perceptual_order.rs`). After recovery the sound is that of an engine that was never
-//! late. `asperity report` has a table of all levels. A finger that is left out is missed: one of
-//! ten leaves 63 % of the cells within 1 dB. Cheaper contacts in place of fewer were measured and
-//! are no levels: an octave of the micro-relief less saved 1 to 11 % in all and moved what is felt
-//! by 2 to 43 dB; the `fast` preset's contacts save 15 %.
+//! (`cli/tests/perceptual_order.rs`). After recovery the sound is that of an engine that was
+//! never late. `asperity report` has a table of all levels. A finger that is left out is missed:
+//! one of ten leaves 63 % of the cells within 1 dB. Cheaper contacts in place of fewer were
+//! measured and are no levels: an octave of the micro-relief less saved 1 to 11 % in all and
+//! moved what is felt by 2 to 43 dB; the `fast` preset's contacts save 15 %.
 //!
 //! *Its own lateness only.* A block may be late because the host did something else, and leaving
 //! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
@@ -57,7 +58,7 @@ pub(crate) struct Work {
     pub(crate) contacts: usize,
     /// Modes that ring.
     pub(crate) modes: usize,
-    /// Of these, those that can be left out.
+    /// Ringing modes that can be left out.
     pub(crate) spared: usize,
 }
 
