@@ -120,7 +120,7 @@ impl DiffuseGroup {
 
 /// Pole p of two one-poles (1 − p) / (1 − p z⁻¹) in a row whose equivalent rectangular width, both
 /// sides of 0 together, is `width` sample rates: (1 − p)⁴ (1 + p²) / (1 − p²)³, by bisection.
-fn noise_pole(width: f64) -> f64 {
+pub(super) fn noise_pole(width: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
         let p = 0.5 * (low + high);
