@@ -398,18 +398,22 @@ fn more_inner_samples_err_less_and_the_finer_way_to_read_a_map_wins() {
 }
 
 #[test]
-fn every_level_of_load_tells_what_the_ear_and_the_finger_miss() {
+fn every_level_of_load_saves_and_tells_what_the_ear_and_the_finger_miss() {
     let levels = report().1["load"].as_array().unwrap();
-    assert_eq!(levels.len(), 10);
+    assert_eq!(levels.len(), 6);
     for level in levels {
         println!("{level}");
     }
-    for of in ["stroke", "strike"] {
+    for (of, least) in [("stroke", 0.9), ("strike", 0.99)] {
         let within: Vec<f64> = levels.iter().map(|level| number(&level[of]["within_1_db"])).collect();
         assert_eq!(within[0], 1.0);
-        assert!(within[1] >= 0.99, "the first level is not heard: {within:?}");
+        assert!(within[1] >= least, "the first level is hardly heard: {within:?}");
         assert_eq!(number(&levels[0][of]["excitation_db"]), 0.0);
     }
+    // A tenth each by the engine's own weights; shares are medians of blocks in turn.
+    let shares: Vec<f64> = levels.iter().map(|level| number(&level["share"])).collect();
+    assert!(shares.windows(2).all(|pair| pair[1] < 0.95 * pair[0]), "{shares:?}");
+    assert!(shares[5] < 0.5, "{shares:?}");
     // Modes are not felt.
     assert!(levels[..2].iter().all(|level| number(&level["felt_worst_db"]) == 0.0));
     let text = fs::read_to_string(report().0.join("speed_vs_error.md")).unwrap();

@@ -1,4 +1,4 @@
-//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two
+//! Cost of contacts on a body to its modal bank: a shared input, a place with gains, a slide (two
 //! inputs: fading out, fading in), friction that rubs one way (the same law, deaf to how the body
 //! moves), a rub that is coupled with the body in every sample, and one that slides as well.
 //!
@@ -147,7 +147,7 @@ fn main() {
     for count in [16, 32, 100, 128, 512] {
         let times = KINDS.map(|kind| {
             let mut body = Body::new(count);
-            // What tells the free motion has to ring.
+            // The free motion is known only of a body that rings.
             body.cell("place");
             best_ns(&mut body, kind)
         });

@@ -1,7 +1,7 @@
 //! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files
 //! quote it, and `docs/formats.md` prints it.
 //!
-//! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
+//! A value outside is refused where it enters, by name; one inside is rendered as it is.
 
 use crate::DesignError;
 

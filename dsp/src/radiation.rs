@@ -201,8 +201,8 @@ impl EquivalentSphere {
         let (mut c, mut y) = ([[0.0; 2 * ORDERS - 1]; ORDERS], [[0.0; 2 * ORDERS - 1]; ORDERS]);
         let (mut before, mut first): (f64, f64) = (f64::INFINITY, 0.0);
         for _ in 0..PASSES {
-            // What is not met yet, projected as it is: the harmonics are orthonormal but for the
-            // mesh.
+            // The part that is not met yet, projected as it is: the harmonics are orthonormal but
+            // for the mesh.
             let mut missing = [[0.0; 2 * ORDERS - 1]; ORDERS];
             let mut area = 0.0;
             for facet in surface.facets() {

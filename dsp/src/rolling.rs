@@ -18,8 +18,8 @@
 //! | rms, α | [`Rolling::rms_at_1mm_m`], [`Rolling::alpha`] | the ground: rms of the octave about 1 mm, spectral exponent |
 //! | F, E* | [`Rolling::normal_force_n`], [`Rolling::modulus_pa`] | |
 //!
-//! What slides sends edges and asperities of its own through the ground, each as sharp as a tip;
-//! what rolls is laid down on it: its surface meets the ground without a relative speed, from
+//! A sliding body sends edges and asperities of its own through the ground, each as sharp as a tip;
+//! a rolling one is laid down on it: its surface meets the ground without a relative speed, from
 //! above, and only as a whole ball.
 //!
 //! - It reaches no valley sharper than itself: λ_d, the law of [`crate::fractal_noise`]'s dilation,

@@ -12,8 +12,8 @@
 //! | AVX2 with FMA (x86-64-v3) | 256 bits | rounds once |
 //! | AVX-512 (Ice Lake and later) | 512 bits | rounds once |
 //!
-//! Where a kernel must give the same bits everywhere it never asks for a · b + c in one operation.
-//! Where it does, all sets that round once agree with each other to the bit, and all that round
+//! A kernel that must give the same bits everywhere never asks for a · b + c in one operation.
+//! Where one does, all sets that round once agree with each other to the bit, and all that round
 //! twice do.
 
 mod set;

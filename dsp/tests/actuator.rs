@@ -341,7 +341,7 @@ fn the_audio_limiter_never_passes_its_ceiling_and_lets_quiet_sound_through_untou
     assert!((later[88_199] - 0.1).abs() < 1e-3);
 }
 
-/// What of a sine is left over once its own frequency is taken out, dB of it, from `skip` s on.
+/// Remainder of a sine once its own frequency is taken out, dB of it, from `skip` s on.
 fn distortion_db(frequency_hz: f64, over_db: f64, rate_hz: f64, skip_s: f64) -> f64 {
     let limiter = PeakLimiter::new(1.0, rate_hz).unwrap();
     let mut state = PeakLimiterState::default();

@@ -30,7 +30,7 @@ impl Rubbed {
     fn new(modes: &[(Mode, f64)], rate_hz: f64) -> Self {
         let level = Level::detect();
         let sound: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
-        // What enters has the gain φ, so what is looked at has φ too: half of the product each.
+        // The input has the gain φ, and so has the output: half of the product each.
         let speed: Vec<Mode> =
             modes.iter().map(|(mode, phi)| place_speed(mode, *phi, rate_hz).unwrap()).collect();
         let squares: Vec<(Mode, f64)> = modes.iter().map(|(mode, phi)| (*mode, phi * phi)).collect();
@@ -193,7 +193,7 @@ fn a_million_random_steps_in_a_bank_never_take_energy_from_the_friction() {
     for rate_hz in [44_100.0, 192_000.0] {
         let (modes, mut plain) = many(40, rate_hz);
         let mut rubbed = Rubbed::new(&modes, rate_hz);
-        // The same forces on the plain modes tell how the place really moves.
+        // Equal forces on the plain modes show how the place really moves.
         let mut twin = RubbedBody::new(&mut plain, rate_hz);
         let mut loose = RubState::default();
         twin.touch_at(&mut loose, |k| modes.get(k).map_or(0.0, |(_, phi)| *phi as f32));

@@ -174,7 +174,7 @@ fn quick_waves(at: f64) -> f64 {
         .sum()
 }
 
-/// What of the ground between samples is known.
+/// Known part of the ground between samples.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,
@@ -232,7 +232,7 @@ fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
         }
         assert!(whole != over_quick_waves(1, Known::Nothing, 8000));
     }
-    // What is no number bends nothing.
+    // A height that is no number bends nothing.
     let design = MicroContact::new(&linear(), Integrator::ExactEvent, RATE_HZ).unwrap();
     let rows = |ground: GroundBetween<'_>| {
         let (mut state, mut out) = (design.at_rest(0.0, 0.5), [ContactSample::default(); 100]);

@@ -37,7 +37,7 @@ fn a_resting_finger_stays_where_the_springs_hold_it_to_the_last_digits() {
     for (rate_hz, level) in
         RATES_HZ.into_iter().flat_map(|rate| Level::available().map(move |level| (rate, level)))
     {
-        // Where products and sums round apart, 2.1e-16 m at the worst; fused 3e-20.
+        // Products and sums that round apart: 2.1e-16 m at the worst; fused 3e-20.
         let digits_m = if level == Level::PORTABLE { 4e-16 } else { 1e-16 };
         for integrator in Integrator::ALL {
             let design = MicroContact::new(&linear(), integrator, rate_hz).unwrap().on(level);
@@ -200,7 +200,7 @@ fn a_finger_that_rides_on_rising_ground_goes_on_without_a_blow() {
                 assert!((row.contact_force_n - 0.5).abs() < 1e-6, "{integrator:?} {velocity_m_s}: {row:?}");
                 assert!((row.pad_velocity_m_s - velocity_m_s).abs() < 1e-6, "{integrator:?}: {row:?}");
             }
-            // What is no velocity is none.
+            // A velocity that is no number is none.
             assert_eq!(design.riding(1e-3, 0.5, f64::NAN), design.at_rest(1e-3, 0.5));
             assert_eq!(design.riding(1e-3, 0.5, 1e300), design.at_rest(1e-3, 0.5));
         }

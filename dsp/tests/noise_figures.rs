@@ -157,7 +157,7 @@ fn four_times_the_speed_raises_the_level_by_6_db_times_alpha_minus_1() {
     }
 }
 
-/// The same stroke sampled 16 times as densely shows what lies above half the sample rate.
+/// A stroke sampled 16 times as densely shows what lies above half the sample rate.
 #[test]
 fn what_the_sample_rate_cannot_hold_is_at_least_40_db_down() {
     const DENSER: usize = 16;

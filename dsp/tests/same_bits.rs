@@ -141,7 +141,7 @@ const FIGURES: [Figure; 7] = [
     ("solid noise", solid_noise, 0x900D_F5B4_D047_48F5, 0x900D_F5B4_D047_48F5),
 ];
 
-/// What a level renders otherwise than the figures say.
+/// Figures that a level renders otherwise.
 fn other_bits(level: Level) -> Vec<String> {
     let figures = FIGURES.into_iter().filter_map(|(name, render, apart, fused)| {
         let (found, figure) = (render(level), if level == Level::PORTABLE { apart } else { fused });

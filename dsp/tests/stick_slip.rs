@@ -182,7 +182,7 @@ fn it_agrees_with_an_integrator_of_another_making_where_the_curve_is_smooth() {
             let mean = f64::from(begun[begun.len() - 1] - begun[0]) / (begun.len() - 1) as f64 / rate_hz;
             let error = 100.0 * (mean / exact - 1.0);
             println!("{frequency_hz} Hz at {rate_hz} Hz: {error:+.3} %");
-            // How fast slipping grows out of sticking on a steep curve is right to the first order
+            // The growth of slipping out of sticking on a steep curve is right to the first order
             // of the step.
             assert!(error.abs() <= bound, "{frequency_hz} Hz: {error:+.3} %");
         }

@@ -75,7 +75,7 @@ fn convolved(
     out
 }
 
-/// The same through the ring, the bank and the first samples.
+/// Waveform through the ring, the bank and the first samples.
 fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usize) -> Vec<f64> {
     let groups = design_groups(modes, rate_hz, &GroupOptions::IMPULSE_RING);
     let groups = groups.collect::<Result<Vec<_>, _>>().unwrap();

@@ -103,7 +103,7 @@ impl BodySeat {
         let fade = self.damped.map_or(1.0, |left| left as f32 / self.fade_samples as f32);
         let shares = self.shares.iter().fold(0.0, |most, share| f64::max(most, share.gain));
         let gain = fade * (self.gain * shares) as f32;
-        // What is on its way counts as infinitely loud, unless nobody would hear it.
+        // A body on its way counts as infinitely loud, unless its gain is zero.
         if gain > 0.0 { self.rings * gain } else { 0.0 }
     }
 
@@ -141,7 +141,7 @@ impl BodySeat {
     pub(crate) fn send_to(&mut self, bus: usize, gain: f64) {
         let place = self.shares.iter().position(|share| share.bus == bus && !share.is_over());
         let place = place.or_else(|| self.shares.iter().position(Share::is_over));
-        // Where a body goes from bus to bus many times within a fade, the oldest ends at once.
+        // If a body goes from bus to bus many times within a fade, the oldest ends at once.
         let share = &mut self.shares[place.unwrap_or(0)];
         if share.bus != bus {
             share.smoothed.set(0.0);
@@ -273,6 +273,11 @@ impl BodySeat {
     /// Modes of the body that must be rung from `position` on; 0 where it is silent.
     pub(crate) fn modes_that_ring(&self, position: u64) -> usize {
         self.current.as_ref().map_or(0, |body| body.modes_that_ring(position))
+    }
+
+    /// Modes that must be rung from `position` on, and how many of them can be spared.
+    pub(crate) fn modes_and_spared(&self, position: u64) -> (usize, usize) {
+        self.current.as_ref().map_or((0, 0), |body| body.modes_and_spared(position))
     }
 
     /// Lends the body for a while; nothing may happen to it until it is [taken

@@ -16,7 +16,7 @@ mod voices;
 
 use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
-use crate::audio::governor::Governor;
+use crate::audio::governor::{Governor, LATE, Work};
 use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
@@ -217,11 +217,19 @@ impl Renderer {
     /// out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
-        self.governor.hear(load, self.position, self.sounding_count());
-        if self.sounding_count() > self.contact_limit() {
+        let work = if load > LATE { self.work() } else { Work::default() };
+        self.governor.hear(load, self.position, work);
+        for _ in self.contact_limit()..self.sounding_count() {
             Counters::add(&self.counters.shed, 1);
             self.silence_least();
         }
+    }
+
+    /// Work of the last block.
+    fn work(&self) -> Work {
+        let bodies = self.bodies_used.iter().map(|index| self.bodies[index].modes_and_spared(self.position));
+        let (modes, spared) = bodies.fold((0, 0), |sum, body| (sum.0 + body.0, sum.1 + body.1));
+        Work { contacts: self.sounding_count(), modes, spared }
     }
 
     /// Changes what all voices need.

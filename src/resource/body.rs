@@ -127,8 +127,8 @@ impl BodySlot {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
         let modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
-        // What nobody would miss comes last; between two levels what rings longest comes first, so
-        // that the groups still awake are the first ones.
+        // The least important come last; between two levels the longest to ring come first, so that
+        // the groups still awake are the first ones.
         let mut order = vec![Ranked::default(); modes.len()];
         let plain: Vec<Mode> = modes.iter().map(|(_, (mode, _))| *mode).collect();
         let levels = modal_bank::shedding_order(&plain, TYPICAL_IMPULSE_N_S, loudest_db_spl, &mut order);
@@ -336,6 +336,13 @@ impl BodySlot {
     /// Modes that must be rung from `position` on; 0 where it is silent.
     pub(crate) fn modes_that_ring(&self, position: u64) -> usize {
         if self.is_silent(position) { 0 } else { modal_bank::LANES * self.bank.groups().max(1) }
+    }
+
+    /// [`modes_that_ring`](Self::modes_that_ring), and how many of them a late machine leaves out.
+    pub(crate) fn modes_and_spared(&self, position: u64) -> (usize, usize) {
+        let kept = modal_bank::LANES * self.levels[MODE_LEVELS - 1];
+        let modes = self.modes_that_ring(position);
+        (modes, modes.saturating_sub(kept))
     }
 
     /// [`render`](Self::render) without the first samples of strikes

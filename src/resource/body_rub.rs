@@ -99,7 +99,7 @@ impl BodyRub {
     ) -> Result<Self, DesignError> {
         let groups = modes.len().div_ceil(LANES);
         let held = modes.chunks(LANES).map(HeldModes::of).collect();
-        // What is designed on the game half is never refused on the audio half.
+        // A design that passes on the game half is never refused on the audio half.
         for mode in modes {
             place_speed(mode, 1.0, sample_rate_hz)?;
         }
@@ -266,7 +266,7 @@ impl BodyRub {
         for (lane, (mode, unit)) in modes[..count].iter().zip(units).enumerate() {
             let share = f64::from(gains.0[lane]);
             moves[lane].1 = share * share * unit * unit;
-            // What enters has the gain of its place already.
+            // The input has the gain of its place already.
             let speed = place_speed(mode, share * unit * unit, self.sample_rate_hz);
             // Modes that could be designed once always can.
             let Ok(speed) = speed else { return };

@@ -12,6 +12,11 @@
 //! ```
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning,
 //! at constant power: sine and cosine, because the two are unrelated.
+//!
+//! Places within a tile and their weights are those of the texture's `tiled`. It is no
+//! `HeightField` among the sources: it adds to the heights that the source below it gave, by that
+//! source's roughness and power at each sample, and is asked between samples too. As a source it
+//! would need both through the trait, which is five methods because no other source does.
 
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,

@@ -131,17 +131,18 @@ pub fn strokes_table(strokes: &[Stroke]) -> String {
 /// Parts left out at each level of load.
 #[must_use]
 pub fn load_table(levels: &[LoadLevel]) -> String {
-    let mut text = "\n## levels of load\n\nReference: level 0. Ten fingers on one body of 256 modes that differ by 60 dB, and a strike on it; the ear by a masking model at 70 dB SPL: share of the cells of an ERB \
-                    and 20 ms within 1 dB, and what 99 % are within. Felt: third octaves, 63 Hz–2 kHz, worst and mean.\n\n| level | leaves out | ns a sample | stroke | strike | felt |\n|--:|---|--:|--:|--:|--:|\n"
+    let mut text = "\n## levels of load\n\nReference: level 0. Ten fingers on ten bodies of 500 modes that differ by 60 dB, and a strike on one; the ear by a masking model at 70 dB SPL: share of the cells of an ERB \
+                    and 20 ms within 1 dB, and what 99 % are within. Felt: third octaves, 63 Hz–2 kHz, worst and mean.\n\n| level | leaves out | ns a sample | of level 0 | stroke | strike | felt |\n|--:|---|--:|--:|--:|--:|--:|\n"
         .to_owned();
-    for LoadLevel { level, leaves_out, ns_per_sample, stroke, strike, felt_worst_db, felt_mean_db } in levels
+    for LoadLevel { level, leaves_out, ns_per_sample, share, stroke, strike, felt_worst_db, felt_mean_db } in
+        levels
     {
         let missed = |missed: &super::excitation::Missed| {
             format!("{:.1} %, {:.1} dB", 100.0 * missed.within_1_db, missed.excitation_db)
         };
         let _ = writeln!(
             text,
-            "| {level} | {leaves_out} | {ns_per_sample:.0} | {} | {} | {felt_worst_db:.1}, {felt_mean_db:.1} dB |",
+            "| {level} | {leaves_out} | {ns_per_sample:.0} | {share:.2} | {} | {} | {felt_worst_db:.1}, {felt_mean_db:.1} dB |",
             missed(stroke),
             missed(strike)
         );

@@ -1,4 +1,6 @@
+use super::design::noise_pole;
 use super::*;
+use crate::rng::Rng;
 use std::vec::Vec;
 
 const RATE_HZ: f64 = 44_100.0;

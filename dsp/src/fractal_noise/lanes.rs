@@ -73,7 +73,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
             lattice.cells = [near_cells(v, first), near_cells(v, second)];
         }
         if !v.all_reach(&lattices[0].bounds, &[-NEAR; 4]) {
-            // Nobody goes there: the fewer instructions the better.
+            // A rare case: the fewer instructions the better.
             let rotations = lattices.iter_mut().zip(&noise.rotations).take(core::hint::black_box(ROTATIONS));
             for (lattice, rotation) in rotations {
                 let [first, second] = turned(v, [x, y], rotation);

@@ -108,8 +108,8 @@ fn what_cubics_through_the_samples_miss_is_told_within_a_factor_of_one_and_a_hal
             (0.66..1.5).contains(&(told_m / rms_m)),
             "{footprint_m} m, R {roughness}: {told_m} for {rms_m}"
         );
-        // What it says need not be looked at misses no more than it may, and with one octave more
-        // it would.
+        // The octaves that it leaves out miss no more than they may, and with one octave more they
+        // would.
         for share in [0.5, 0.1, 0.01, 0.001] {
             let left_m = share * told_m;
             let octave = weights.missed(roughness, footprints_m, left_m).octave;

@@ -18,7 +18,7 @@
 //! Source: Hasti §III-D ("We use Hertz contact theory to determine the impact force profile"); the
 //! constants are our own integration of the equation.
 //!
-//! What we changed: a pulse of 10–100 µs is shorter than a sample at 44.1 kHz, and sampling it at
+//! Changed: a pulse of 10–100 µs is shorter than a sample at 44.1 kHz, and sampling it at
 //! points loses up to 560 % of its impulse. We deposit it under a cubic B-spline
 //! ([`HertzPulse::deposit`]): its area and its onset within the sample are exact, and what folds
 //! back below 10 kHz stays under 1 % of the impulse for any contact time. The kernel's own response

@@ -15,7 +15,7 @@
 //! | x_m, F_n | `height_m`, `normal_force_n` of [`MicroContact::run`] | one value a sample |
 //! | x_s, v_s, x_f | [`ContactSample::pad_m`], [`ContactSample::pad_velocity_m_s`], [`ContactSample::finger_m`] | |
 //!
-//! What we changed, and what it brings:
+//! Changes to the paper, and their effect:
 //! - three integrators ([`Integrator`]) instead of one, chosen by a rule ([`Choice`]) that never
 //!   runs an unsafe one; the paper's own is one of them, with its damper centred in time;
 //! - a leash: beyond [`Probe::leash_m`] of separation nothing moves further up (an unloaded finger
@@ -263,8 +263,8 @@ impl MicroContact {
                 Scheme::EnergyConserving(_) => 0.0,
             };
             let later_samples = later_samples.clamp(0.0, 16.0);
-            // What presses speeds the finger up on its way down; the pad behind its damper does not
-            // follow so soon.
+            // The pressing force speeds the finger up on its way down; the pad behind its damper
+            // does not follow so soon.
             let gained = normal_force_n.clamp(0.0, guard::MAX_FORCE_N) * self.step_s * later_samples
                 / self.probe.finger_mass_kg;
             state.y = [gap_m + later_samples * drift, 0.0, -speed, gained - speed];

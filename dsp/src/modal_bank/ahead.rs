@@ -105,7 +105,7 @@ fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out:
     let turns = unsafe {
         for (part, (groups, states)) in groups.chunks(AT_ONCE).zip(states.chunks(AT_ONCE)).enumerate() {
             for lane in (0..LANES).step_by(len::<T>()) {
-                // As many sums as there are registers for.
+                // One sum a register.
                 match len::<T>() {
                     LANES => add_lanes::<T, 4>(token, groups, states, lane, part == 0, &mut turns),
                     8 => add_lanes::<T, 2>(token, groups, states, lane, part == 0, &mut turns),

@@ -215,7 +215,7 @@ impl ModeGroup {
             [[0, 1], [2, 3]].map(|row| row.map(|i| f64::from(self.hot[STEP + i][place(STEP + i, lane)])));
         let [exact, [[a, b], [c, d]]] = [step, stored].map(|x| (0..5).fold(x, |x, _| square(x)));
         let det = a * d - b * c;
-        // What has decayed by 60 dB within the grid needs no exact decay.
+        // A mode that decays by 60 dB within the grid needs no exact decay.
         if det > 1e-6 {
             let [[vv, vw], [wv, ww]] = product(exact, [[d / det, -b / det], [-c / det, a / det]]);
             for (to, row) in self.trim.iter_mut().zip([[vv - 1.0, vw], [wv, ww - 1.0]]) {

@@ -1,7 +1,7 @@
 //! Direct feed-through: the share of an input that reaches the outputs of its own turn without
 //! passing the states.
 //!
-//! The same for all modes together, so it costs nothing a mode: the states of a turn's beginning do
+//! One term for all modes together, so it costs nothing a mode: the states of a turn's beginning do
 //! not know yet what is heard in it, and h₀…h₃, summed over the modes, are all that is missing.
 #![allow(unsafe_code)]
 
@@ -87,7 +87,7 @@ impl Direct {
     /// Whole turns of the only input.
     #[inline(always)]
     fn add_one(&self, impulses: &[f32], turns: &mut [[f32; TURN]]) {
-        // What each sample sends to the turn: nothing to those before it.
+        // Contribution of each sample to the turn: nothing to those before it.
         let columns: [[f32; TURN]; TURN] =
             from_fn(|sample| from_fn(|i| if i >= sample { self.heard_as[0][i - sample] } else { 0.0 }));
         for (u, turn) in impulses.as_chunks::<TURN>().0.iter().zip(turns) {

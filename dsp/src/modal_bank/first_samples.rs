@@ -16,7 +16,7 @@
 //! | h, h' | response of all modes to an impulse, 0 before it, and of the compensated ones with their direct terms: the bank's |
 //! | E | [`FirstSamples`]: a polynomial for each of its four samples, and its moments |
 //!
-//! What it brings (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10
+//! Effect (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10
 //! µs contact, rms over 50 ms) to 14 % (the same with a tenth of the ringing) from the response of
 //! the equation, and are 0.03 %. What is left is the ring's: modes above 0.4 of the rate hear their
 //! image of contacts shorter than a sample.

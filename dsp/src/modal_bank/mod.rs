@@ -27,7 +27,7 @@
 //! | the rows of v and w; the four outputs | one lane of [`ModeGroup`] |
 //! | v, w | one lane of [`GroupState`] |
 //!
-//! What we changed, and what it does:
+//! Changes to the paper, and their effect:
 //! - *Delta form, not the paper's direct form.* Same H(z); in `f32` the direct form is 5 cents off
 //!   at 30 Hz and 44.1 kHz and 81 cents at 192 kHz, the delta form under 0.01 cent at both.
 //! - *Two samples a step.* v and w are the coordinates in which both impulses of a pair enter with

@@ -96,7 +96,7 @@ fn ringing_keeps_more(modes: &[Mode], among: &[Ranked], kept: usize, rings: impl
             [struck + power, stroked + power / decay_per_s.max(1e-3)]
         })
     };
-    // What rings longer than this is kept: found by halving.
+    // The time beyond which a mode is kept: found by halving.
     let (mut low, mut high) = (-1e9, 1e9);
     for _ in 0..80 {
         let middle = 0.5 * (low + high);

@@ -249,8 +249,7 @@ impl Coupled {
         let eight = |x: &[f64]| f64x8::from_slice(token, &x[..BLOCK]);
         let (mut state, mut moved) = (self.state, self.moved);
         let answers = [eight(&self.window_m_s_n), eight(&self.window_m_s_n[BLOCK..])];
-        // What is known of the coming samples stays at hand: what comes back from memory comes
-        // late.
+        // The known part of the coming samples stays in registers: a load would come late.
         let known = &self.known_m_s[LEAD + first..];
         let mut near_m_s: [f64; NEAR] = from_fn(|i| known[i]);
         let mut window = [eight(&known[NEAR..]), eight(&known[NEAR + BLOCK..])];
@@ -324,8 +323,8 @@ impl Coupled {
 /// One sample, in which the place would lag `behind_m_s` behind what rubs if the two samples before
 /// had not been.
 ///
-/// What slips waits for the root of the sample before and for nothing else: a product, a square,
-/// and the next root.
+/// A slipping contact waits for the root of the sample before and for nothing else: a product, a
+/// square, and the next root.
 #[inline(always)]
 fn sample<T: Set>(
     token: T,

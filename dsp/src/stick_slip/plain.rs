@@ -1,6 +1,6 @@
 //! Rubbed body, plainly: the modes one after the other, a sample at a time.
 //!
-//! What `Coupled` (beside) does for a whole [modal bank](crate::modal_bank) cell by cell, written
+//! The work of `Coupled` (beside) on a whole [modal bank](crate::modal_bank) cell by cell, written
 //! as the equations of the [module](super) stand, with an energy that can be asked for.
 
 use super::{Friction, Law, Rub, RubState, Sweep};

@@ -104,7 +104,7 @@ impl Estimate {
             rest: [[0.0; 2]; 2],
             glide: None,
         };
-        // Nobody asks an estimate that the mode does not use.
+        // An estimate that the mode does not use is left as it is.
         if design.mode == PathMode::BandLimited {
             estimate.settle(design);
         }

@@ -1,4 +1,4 @@
-//! What a struck bank plays, against closed forms, figures of scipy and its own reference in f64.
+//! Waveforms of a struck bank, against closed forms, figures of scipy and its own reference in f64.
 
 use super::made::{PLAIN, RATES_HZ, body, design, error_db, kernels, mode, reference, render};
 use asperity_dsp::modal_bank::{GroupOptions, design_group};

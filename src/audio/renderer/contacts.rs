@@ -134,7 +134,7 @@ impl Renderer {
             return None;
         }
         let due = self.due(stamp);
-        // Where it touched before it may still fade: from now on it is shown here alone.
+        // Its voice of before may still fade: from now on it is shown here alone.
         self.voices
             .iter_mut()
             .filter(|voice| voice.contact == contact)

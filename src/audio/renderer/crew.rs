@@ -94,7 +94,7 @@ impl SurfaceShare {
             *pressing = voice.render(stretch, &mut self.seat, scratch, &mut NoTap);
             std::mem::swap(out, &mut scratch.out);
         }
-        // Nobody but the renderer holds it between two blocks.
+        // Between two blocks the renderer alone holds it.
         self.shared = None;
     }
 }
@@ -370,8 +370,8 @@ fn bodies_pay(terms: Terms, n: usize, bodies: &[BodySeat], used: &Occupied) -> b
     let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
     let (ringing, modes) =
         costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
-    // Where modes are left out a body sounds twice, by those that hear and those that do not: its
-    // sums are made in its own order.
+    // While modes are left out a body sounds twice, by those that hear and those that do not:
+    // its sums are made in its own order.
     ringing >= 2 && modes * n >= LEAST_MODE_SAMPLES && terms.mode_level == 0
 }
 

@@ -86,7 +86,7 @@ impl Pad {
     pub(super) fn appear(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
         self.late_row = PadSample { onset: None, ..*row };
         if self.state.resets() > 0 || row.contact_force_n > LEAD_IN_BLOW * force_n {
-            // What never was there cannot have thrown it.
+            // Ground that was never there cannot have thrown it.
             self.state = self.model.riding(height_m, force_n, rise_m_s);
         }
         self.resets_told = self.state.resets();

@@ -66,7 +66,7 @@ impl Profile {
         let mut bounds_m = self.lay_out(along.shared, points);
         self.short.known = false;
         if let Some(OnTheWay { from_m, .. }) = along.between {
-            // What is looked at lies between two places of the path, or the one before it.
+            // Looks lie between two places of the path, or the one before it.
             let [low_m, high_m] = bounds_m;
             bounds_m = [
                 [0, 1].map(|axis| low_m[axis].min(from_m[axis])),

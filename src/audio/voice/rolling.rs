@@ -56,7 +56,7 @@ impl Rolling {
         let from = self.share[1];
         let wanted = self.wanted(over.at).unwrap_or(from);
         let to = wanted + LAG * (from - wanted);
-        // What slides again does so to the bit in the end.
+        // A ball that slides again does so to the bit in the end.
         self.share = [from, if wanted == 0.0 && to < 1e-6 { 0.0 } else { to }];
         let radius_m = self.told.and_then(|(_, radius_m)| radius_m);
         (self.filter, self.force) = over.filters(radius_m, self.roughness);

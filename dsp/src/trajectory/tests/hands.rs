@@ -44,7 +44,7 @@ fn a_hand_that_reaches_is_followed_to_a_few_micrometres_between_its_reports() {
     }
 }
 
-/// How far and how fast a path goes beyond a finger that stops dead at some time between two
+/// Distance and speed of a path beyond a finger that stops dead at some time between two
 /// reports, m and m/s.
 fn beyond_a_stop(mode: PathMode, motion: impl Fn(f64) -> [f64; 2], stop_s: f64) -> [f64; 2] {
     let [stop_m, stop_m_s] = motion(stop_s);

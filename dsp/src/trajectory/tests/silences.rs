@@ -1,4 +1,4 @@
-//! What a path does while a game is silent, and after it.
+//! Paths while a game is silent, and after it.
 
 use super::*;
 use std::format;
@@ -60,7 +60,7 @@ fn after_a_hitch_of_the_game_the_path_neither_hurries_nor_steps_and_is_soon_wher
     }
 }
 
-/// What a finger does while nobody looks: it may stop, or turn.
+/// A finger whose reports fail to come may stop, or turn.
 #[test]
 fn a_finger_that_stopped_or_turned_during_a_hitch_is_found_at_its_own_pace() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {

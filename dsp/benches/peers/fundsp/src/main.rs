@@ -32,7 +32,7 @@ fn decay_per_s(t60_s: f64) -> f64 {
     1000f64.ln() / t60_s
 }
 
-/// What `resonator_hz` takes second: its code has a Q there, whatever the argument is called.
+/// Second argument of `resonator_hz`: its code has a Q there, whatever the argument is called.
 fn q(frequency_hz: f64, decay_per_s: f64) -> f32 {
     (PI * frequency_hz / decay_per_s) as f32
 }

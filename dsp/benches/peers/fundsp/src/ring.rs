@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// How much of the response is looked at, s.
+/// Length of the response that is looked at, s.
 pub const LENGTH_S: f64 = 5.0;
 const WINDOW_S: f64 = 1.0;
 const HOP_S: f64 = 0.05;
@@ -13,7 +13,7 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Of a ring at about `near_hz` (within 5 Hz).
+    /// Frequency and decay of a ring at about `near_hz` (within 5 Hz).
     pub fn of(response: &[f32], rate_hz: f64, near_hz: f64) -> Self {
         let window = (WINDOW_S * rate_hz) as usize;
         let hop = (HOP_S * rate_hz) as usize;
@@ -44,7 +44,7 @@ fn envelope(response: &[f32], start: usize, rate_hz: f64, near_hz: f64) -> (f64,
     (re, im)
 }
 
-/// Of the straight line through equally spaced values, a step.
+/// Slope of the straight line through equally spaced values, a step.
 fn slope(values: &[f64]) -> f64 {
     let middle = 0.5 * (values.len() as f64 - 1.0);
     let at = |i: usize| i as f64 - middle;
