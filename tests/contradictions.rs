@@ -408,7 +408,7 @@ fn a_heavy_thing_with_a_probe_of_its_own_presses_as_hard_as_it_likes() {
             let t = f64::from(step) / 60.0;
             let sample = ContactSample::new([0.1 + 0.02 * t, 0.5], 900.0).sliding([0.08, 0.0]);
             let event = match step {
-                0 => ContactEvent::begin_with(contact, Touching::on(surface).with(probe), sample),
+                0 => ContactEvent::begin_with(contact, Touching::on(surface).probe(probe), sample),
                 _ => ContactEvent::moved(contact, sample),
             };
             scene.report(number as f64 + t, event).unwrap();

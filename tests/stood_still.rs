@@ -48,7 +48,7 @@ impl Strikes {
             game.touch(1, ContactSample::new(uv, 0.6).sliding([0.05, 0.0]), game.tick == 0);
         }
         if game.tick.is_multiple_of(self.strikes_every) && self.strikes_every < u32::MAX {
-            game.report(ContactEvent::Impact(Impact::on(game.block).by(Material::STEEL, 0.01, 0.005)));
+            game.report(ContactEvent::Impact(Impact::on(game.block).striker(Material::STEEL, 0.01, 0.005)));
         }
         game.tick += 1;
     }

@@ -21,7 +21,7 @@ impl Game {
     pub fn new(config: Config) -> Self {
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let block = scene.add_body(block()).unwrap();
-        let surface = scene.add_surface(plate(0.8).on(block)).unwrap();
+        let surface = scene.add_surface(plate(0.8).body(block)).unwrap();
         Self { scene, renderer, block, surface, tick: 0 }
     }
 

@@ -38,12 +38,12 @@ fn limited_db(rng: &mut Rng, strokes: bool) -> f64 {
     let mut physics = PhysicsWorld::default();
     physics.integration_parameters.contact_recycling = false;
     let of = material(rng);
-    let ground = Surface::flat(8.0, 8.0).unwrap().of(of).micro_relief_m(relief_m).wraps(false);
+    let ground = Surface::flat(8.0, 8.0).unwrap().material(of).micro_relief_m(relief_m).wraps(false);
     let mut floor = Thing::of(of);
     let ground = if rng.uniform() < 0.7 {
         let slab = scene.add_body(Body::stock(Stock::Plate, of, 0.5).unwrap()).unwrap();
         floor = floor.ringing(slab);
-        ground.on(slab)
+        ground.body(slab)
     } else {
         ground
     };
