@@ -83,6 +83,14 @@ pub struct GradientNoise3d {
 
 impl GradientNoise3d {
     /// A lattice that depends on all 64 bits of the seed.
+    ///
+    /// ```
+    /// use asperity_dsp::gradient_noise_3d::GradientNoise3d;
+    ///
+    /// // Zero at the corners of its cells, with a slope there.
+    /// let noise = GradientNoise3d::new(7).at([2.0, -3.0, 5.0]);
+    /// assert!(noise.value == 0.0 && noise.gradient != [0.0; 3]);
+    /// ```
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let seed = hash_u32(seed as u32) ^ hash_u32((seed >> 32) as u32).rotate_left(16);

@@ -171,6 +171,13 @@ fn excite(from: &Ranked, to: &mut Ranked, times: f64) {
 }
 
 /// ERB number of a frequency.
+///
+/// ```
+/// use asperity_dsp::masking::erb_number;
+///
+/// // One ERB at 1 kHz is 132.6 Hz wide.
+/// assert!((erb_number(1066.3) - erb_number(933.7) - 1.0).abs() < 0.01);
+/// ```
 #[must_use]
 pub fn erb_number(frequency_hz: f64) -> f64 {
     21.4 * libm::log10(1.0 + 0.00437 * frequency_hz)

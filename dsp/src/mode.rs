@@ -27,6 +27,13 @@ pub struct Mode {
 
 impl Mode {
     /// Time for the mode to fall by 60 dB, seconds.
+    ///
+    /// ```
+    /// use asperity_dsp::mode::Mode;
+    ///
+    /// let mode = Mode { frequency_hz: 440.0, decay_per_s: 6.908, amplitude: 0.1, phase_rad: 0.0 };
+    /// assert!((mode.t60_s() - 1.0).abs() < 1e-3);
+    /// ```
     #[must_use]
     pub fn t60_s(&self) -> f64 {
         3.0 * core::f64::consts::LN_10 / self.decay_per_s

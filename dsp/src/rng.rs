@@ -21,6 +21,13 @@ pub struct Rng {
 
 impl Rng {
     /// A stream that depends on all 64 bits of the seed.
+    ///
+    /// ```
+    /// use asperity_dsp::rng::Rng;
+    ///
+    /// let (mut a, mut b) = (Rng::new(7), Rng::new(7));
+    /// assert!((0..100).all(|_| a.uniform() == b.uniform()));
+    /// ```
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         let mut rng = Self { state: seed.wrapping_add(1_442_695_040_888_963_407) };

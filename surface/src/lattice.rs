@@ -47,6 +47,18 @@ pub struct Lattice {
 impl Lattice {
     /// A lattice of a cell of heights in metres.
     ///
+    /// ```
+    /// use asperity_surface::{lattice::Lattice, raster::Raster};
+    ///
+    /// // Bumps of 0.1 mm, 2 mm apart, in rows 60° to each other.
+    /// let bump = |t: usize| 0.5 - 0.5 * (t as f64 / 16.0 * std::f64::consts::TAU).cos();
+    /// let cell = Raster::from_fn(16, 16, |x, y| 1e-4 * bump(x) * bump(y));
+    /// let lattice = Lattice::new(&cell, [2e-3, 0.0], [1e-3, 1.732e-3])?;
+    /// let ((here_m, _), (there_m, _)) = (lattice.at([5e-4, 3e-4]), lattice.at([25e-4, 3e-4]));
+    /// assert!((here_m - there_m).abs() < 1e-12);
+    /// # Ok::<(), asperity_dsp::DesignError>(())
+    /// ```
+    ///
     /// # Errors
     /// When the cell is empty, larger than [`MAX_CELL`], not filled or not finite, or when the
     /// translations are parallel (an angle below 1°), shorter than 1 µm or longer than 1 km.

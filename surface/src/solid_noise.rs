@@ -68,6 +68,16 @@ pub struct SolidNoise {
 impl SolidNoise {
     /// A surface cut at a slant.
     ///
+    /// ```
+    /// use asperity_surface::{solid_materials::SolidMaterial, solid_noise::SolidNoise};
+    ///
+    /// let granite = SolidMaterial::from_name("granite").ok_or("is one of the seven")?.parameters();
+    /// let (block, same) = (SolidNoise::new(granite, 7)?, SolidNoise::new(granite, 7)?);
+    /// let here_m = [0.01, 0.02, 0.0];
+    /// assert_eq!(block.definition(&granite, here_m), same.definition(&granite, here_m));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// When a parameter is out of its range.
     pub fn new(parameters: SolidNoiseParameters, seed: u64) -> Result<Self, DesignError> {

@@ -196,6 +196,16 @@ impl Default for PeakLimiterState {
 impl PeakLimiter {
     /// A limiter that never lets a sample above `ceiling`.
     ///
+    /// ```
+    /// use asperity_dsp::actuator::{PeakLimiter, PeakLimiterState};
+    ///
+    /// let limiter = PeakLimiter::new(1.0, 44_100.0)?;
+    /// let mut block = [0.5, 3.0, -8.0, f32::NAN];
+    /// PeakLimiterState::default().run(&limiter, &mut block);
+    /// assert!(block.iter().all(|x| x.abs() <= 1.0));
+    /// # Ok::<(), asperity_dsp::DesignError>(())
+    /// ```
+    ///
     /// # Errors
     /// Names the field that is out of range.
     pub fn new(ceiling: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {

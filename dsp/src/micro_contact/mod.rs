@@ -113,6 +113,18 @@ impl Scheme {
 impl MicroContact {
     /// Designs the contact; what runs may differ from `wanted` as [`Choice`] documents.
     ///
+    /// ```
+    /// use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
+    ///
+    /// // A fingertip at rest on flat ground presses with what presses it.
+    /// let contact = MicroContact::new(&Probe::default(), Integrator::ExactEvent, 44_100.0)?;
+    /// let mut state = contact.at_rest(0.0, 0.5);
+    /// let mut rows = [ContactSample::default(); 64];
+    /// contact.run(&mut state, &[0.0; 64], &[0.5; 64], &mut rows);
+    /// assert!((rows[63].contact_force_n - 0.5).abs() < 1e-6);
+    /// # Ok::<(), asperity_dsp::DesignError>(())
+    /// ```
+    ///
     /// # Errors
     /// When a field of the probe is outside its range, or the rate outside 1 kHz to 20 MHz
     /// (oversampled references).

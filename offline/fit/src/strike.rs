@@ -87,6 +87,19 @@ impl FitOptions {
 
 /// Fits one strike of `recording`; `progress` hears the part done, 0 to 1.
 ///
+/// ```
+/// use asperity_fit::{FitOptions, Recording, fit};
+///
+/// // A bar of one mode, struck after 50 ms.
+/// let ring = |n: usize| (n >= 2205).then(|| (n - 2205) as f64 / 44_100.0);
+/// let sound = |t: f64| (-12.0 * t).exp() * (std::f64::consts::TAU * 812.0 * t).sin();
+/// let samples = (0..44_100).map(|n| ring(n).map_or(0.0, sound)).collect();
+/// let recording = Recording::from_samples("bar", samples, 44_100.0)?;
+/// let found = fit(&recording, &FitOptions::default(), &mut |_| {})?;
+/// assert!((found.modes[0].frequency_hz - 812.0).abs() < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Options out of range, a strike that is not there, or next to nothing after the onset.
 pub fn fit(

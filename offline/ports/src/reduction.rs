@@ -100,6 +100,16 @@ const FAINTEST_STROKE: f64 = 0.05;
 
 /// Reduces samples at `rate_hz` to a clip for a device. `progress` hears how much is done, 0 to 1.
 ///
+/// ```
+/// use asperity_ports::device::Device;
+/// use asperity_ports::reduction::{Options, reduce};
+///
+/// let buzz: Vec<f64> = (0..8000).map(|n| (n as f64 / 8000.0 * 170.0 * std::f64::consts::TAU).sin()).collect();
+/// let reduced = reduce(&buzz, 8000.0, &Device::quest(), &Options::default(), &mut |_| {})?;
+/// assert_eq!(reduced.left.len(), reduced.original.len());
+/// # Ok::<(), asperity_ports::PortError>(())
+/// ```
+///
 /// # Errors
 /// When there are no samples, one is not finite, the rate or an option is refused.
 pub fn reduce(

@@ -96,6 +96,22 @@ impl SolvedBody {
 
 /// Makes a body of a mesh; `progress` hears the part done, 0 to 1.
 ///
+/// ```
+/// use asperity_shape::eigenmodes::Wanted;
+/// use asperity_shape::{Elastic, Fineness, Making, make_as_fine_as, parse};
+///
+/// // A glass brick of 2 × 3 × 5 cm, as a mesh of eight points.
+/// let obj = "v 0 0 0\nv .02 0 0\nv .02 .03 0\nv 0 .03 0\nv 0 0 .05\nv .02 0 .05\nv .02 .03 .05\nv 0 .03 .05\n\
+///            f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+/// let mesh = parse("brick.obj".as_ref(), obj.as_bytes())?;
+/// let glass = Elastic { young_pa: 70e9, poisson: 0.22, density_kg_m3: 2500.0 };
+/// let wanted = Wanted { up_to_hz: None, most: 4 };
+/// let making = Making { material: glass, size_m: None, unit_m: None, thickness_m: None, wanted };
+/// let brick = make_as_fine_as(mesh, &making, &Fineness::PREVIEW, &mut |_| {})?;
+/// assert!((brick.mass_kg - 0.075).abs() < 1e-4);
+/// # Ok::<(), asperity_shape::ShapeError>(())
+/// ```
+///
 /// # Errors
 /// When the mesh is no body (open, empty, in parts, with walls too thin), a number is out of its
 /// range, or the modes cannot be solved for.
