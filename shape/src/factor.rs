@@ -17,9 +17,9 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-/// Most numbers of a factor: 1.2 GB, and about a minute. A thin body has fewer for its unknowns than
+/// Most numbers of a factor: with all the rest 2 GB. A thin body has fewer for its unknowns than
 /// a chunky one.
-const MOST_NUMBERS: usize = 150_000_000;
+const MOST_NUMBERS: usize = 220_000_000;
 
 /// The order of elimination and the pattern of the factor; the same for every shift.
 #[derive(Debug)]
