@@ -9,6 +9,7 @@
 
 #[cfg(feature = "exr")]
 mod exr;
+mod other_kinds;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "more-pictures")]
@@ -153,6 +154,9 @@ fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
     let mut first = Vec::new();
     file.by_ref().take(FIRST_BYTES).read_to_end(&mut first).map_err(Problem::Io)?;
     file.rewind().map_err(Problem::Io)?;
+    if let Some((kind, instead)) = other_kinds::of(&first) {
+        return Err(Problem::OtherFormat { kind, instead });
+    }
     match image::guess_format(&first) {
         Ok(format) => Ok(format),
         Err(_) if is_tga(&first) => Ok(ImageFormat::Tga),

@@ -231,6 +231,14 @@ pub enum Problem {
         if cfg!(feature = "more-pictures") { ", WebP, TIFF, TGA, BMP" } else { "" },
         if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
     UnknownFormat,
+    /// Its first bytes are of another format that we know by name.
+    #[error("is {kind}, which is not read; {instead}")]
+    OtherFormat {
+        /// The format.
+        kind: &'static str,
+        /// Way to a picture that is read.
+        instead: &'static str,
+    },
     /// The picture is cut off or contradicts itself.
     #[error("damaged or cut off ({0}); a complete file is needed")]
     Damaged(String),

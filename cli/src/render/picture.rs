@@ -1,14 +1,19 @@
 //! `render --plot`: what happened, at a glance.
 //!
 //! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on
-//! it; the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and
-//! spectra.
+//! it; the impulses sent to the body; the busiest instant enlarged ([`zoom`]); surfaces from above
+//! ([`ground`]); and both outputs as waves and spectra ([`outputs`]).
 
+mod ground;
+mod outputs;
+mod zoom;
+
+use crate::plot::{Axis, Figure, Layer, Panel, Series, palette};
 use asperity::Wrap;
-use asperity_plot::{
-    Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
-};
-use asperity_surface::raster::Raster;
+use asperity_texture::raster::Raster;
+use ground::ground_panel;
+use outputs::{audio_rows, haptic_rows};
+use zoom::zoom_panels;
 
 /// Contacts drawn one by one; more would cover each other.
 pub const DRAWN_CONTACTS: usize = 8;
@@ -16,10 +21,10 @@ pub const DRAWN_CONTACTS: usize = 8;
 /// need more, numbers stand there.
 const MOST_LETTERS: usize = 126;
 const LEGEND_LETTERS: usize = 6;
-/// Length of the enlarged instant, s.
-const ZOOM_S: f64 = 0.03;
-/// A curve that moves by less within it is flat, m.
-const FLAT_M: f64 = 1e-8;
+/// Momentum in a sample that is none: a thousandth of what the lightest stroke sends.
+const NO_IMPULSE_N_S: f64 = 1e-11;
+/// Surfaces from above in a row of the picture.
+const GROUNDS_A_ROW: usize = 4;
 /// Between two reports of most games, s.
 const REPORT_S: f64 = 1.0 / 60.0;
 
@@ -230,215 +235,4 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
         Axis::log("impulse", "N·s").range(top * 1e-4, top * 1.5),
     )
     .with(Layer::Stems { label: String::new(), colour: palette::IMPACT.to_owned(), points })
-}
-
-/// Momentum in a sample that is none: a thousandth of what the lightest stroke sends.
-const NO_IMPULSE_N_S: f64 = 1e-11;
-
-/// The window with the most collisions, or else the most momentum, on the contact it belongs to.
-fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
-    let mut best: Option<(f64, usize, f64)> = None;
-    // Only what is drawn was kept in full.
-    for (index, contact) in take.contacts.iter().enumerate().filter(|(_, c)| !c.height_m.is_empty()) {
-        let collides = !contact.collisions.is_empty();
-        let events = if collides { &contact.collisions } else { &contact.impulses };
-        let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };
-        let (mut first, mut sum) = (0, 0.0);
-        for last in 0..events.len() {
-            sum += strength(last);
-            while events[last][0] - events[first][0] > ZOOM_S {
-                sum -= strength(first);
-                first += 1;
-            }
-            // The landing itself is an event of its own kind; the stroke is what is to be seen.
-            let settled = events[first][0] > contact.start_s + 0.08;
-            if settled && best.is_none_or(|(most, _, _)| sum > most) {
-                best = Some((sum, index, (events[first][0] + events[last][0]) / 2.0));
-            }
-        }
-    }
-    best.map(|(_, index, middle)| (index, middle)).or_else(|| {
-        let index = take.contacts.iter().position(|contact| !contact.height_m.is_empty())?;
-        let contact = &take.contacts[index];
-        Some((index, contact.start_s + contact.height_m.len() as f64 / take.sample_rate_hz / 2.0))
-    })
-}
-
-fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
-    let Some((index, middle)) = busiest(take) else { return Vec::new() };
-    let contact = &take.contacts[index];
-    let rate_hz = take.sample_rate_hz;
-    let end_s = contact.start_s + contact.height_m.len() as f64 / rate_hz;
-    let from_s = (middle - ZOOM_S / 2.0).min(end_s - ZOOM_S).max(contact.start_s);
-    let first = ((from_s - contact.start_s) * rate_hz) as usize;
-    let last = (first + (ZOOM_S * rate_hz) as usize).min(contact.height_m.len());
-    let part = |values: &[f64]| {
-        let cut = values.get(first..last).unwrap_or(&[]);
-        Series::signal(cut.iter().copied(), rate_hz, contact.start_s + first as f64 / rate_hz)
-    };
-    let inside = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        points.iter().filter(|[t, _]| (from_s..from_s + ZOOM_S).contains(t)).copied().collect()
-    };
-    let collisions = inside(&contact.collisions);
-    let label = if collisions.is_empty() { "" } else { "collision" };
-    let axis = Axis::new("time", "s").range(from_s, from_s + ZOOM_S);
-    let (of, colour) = match take.contacts.len() {
-        1 => ("it", palette::PAD),
-        _ => (&*contact.label, drawn(take).nth(index).map_or(palette::PAD, |(_, colour)| colour)),
-    };
-    let title = format!("{:.0} ms of {of}, enlarged", ZOOM_S * 1e3);
-    let zoom = Panel::new(title, axis, Axis::new("height", "m"))
-        .weight(2.0)
-        .with(Layer::ground("surface", part(&contact.height_m)))
-        .with(Layer::Line {
-            label: "pad".to_owned(),
-            colour: colour.to_owned(),
-            width_px: 1.8,
-            fill: None,
-            dashed: false,
-            data: part(&contact.pad_m),
-        })
-        .with(Layer::Dots {
-            label: label.to_owned(),
-            colour: palette::IMPACT.to_owned(),
-            points: collisions,
-            radius_px: vec![3.5],
-            names: Vec::new(),
-        });
-    // On flat ground there is nothing to enlarge.
-    let swing_m = [&contact.height_m, &contact.pad_m].map(|curve| {
-        let cut = curve.get(first..last).unwrap_or(&[]);
-        cut.iter().copied().fold(f64::MIN, f64::max) - cut.iter().copied().fold(f64::MAX, f64::min)
-    });
-    let moves = swing_m.iter().any(|swing_m| *swing_m > FLAT_M);
-    let mut panels: Vec<Panel> = moves.then_some(zoom).into_iter().chain([levels_panel(take)]).collect();
-    // Several surfaces have rows of their own.
-    if let [ground] = &take.grounds[..] {
-        panels.push(ground_panel(take, ground));
-    }
-    panels
-}
-
-/// Surfaces from above in a row of the picture.
-const GROUNDS_A_ROW: usize = 4;
-
-/// The finger's way over the surface, seen from above; v grows downwards, as in the image.
-fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
-    let [width_m, height_m] = ground.extent_m;
-    let picture = Picture {
-        x: [0.0, width_m],
-        y: [height_m, 0.0],
-        width: ground.heights.width,
-        height: ground.heights.height,
-        values: ground.heights.values.iter().map(|&height| height as f32).collect(),
-        scale: colour::Scale::Earth,
-        bar: None,
-    };
-    let across = Axis::new("u", "m").range(0.0, width_m);
-    let down = Axis::new("v", "m").range(height_m, 0.0);
-    let title = match take.grounds.len() {
-        1 => ground.title.clone(),
-        _ => ground.surface.trim_start_matches(" on ").to_owned(),
-    };
-    let mut panel = Panel::new(title, across, down).with(picture).true_scale();
-    for (contact, colour) in drawn(take).filter(|(contact, _)| contact.label.ends_with(&ground.surface)) {
-        panel = panel.with(Layer::Line {
-            label: String::new(),
-            colour: colour.to_owned(),
-            width_px: 1.8,
-            fill: None,
-            dashed: false,
-            data: Series::Points(on_one_tile(&contact.path_uv, ground)),
-        });
-    }
-    panel
-}
-
-/// A path on the one tile of a surface that is drawn, m; where it goes on at the other edge the
-/// line is broken.
-fn on_one_tile(path_uv: &[[f64; 2]], ground: &Ground) -> Vec<[f64; 2]> {
-    let fold = |x: f64| match ground.wrap {
-        Wrap::Repeat => x.rem_euclid(1.0),
-        Wrap::Mirror => 1.0 - (x.rem_euclid(2.0) - 1.0).abs(),
-        Wrap::Clamp => x,
-    };
-    let place = |uv: [f64; 2]| [fold(uv[0]) * ground.extent_m[0], fold(uv[1]) * ground.extent_m[1]];
-    let tile = |uv: [f64; 2]| uv.map(f64::floor);
-    let mut points = Vec::with_capacity(path_uv.len());
-    for (n, &uv) in path_uv.iter().enumerate() {
-        if ground.wrap == Wrap::Repeat && n > 0 && tile(path_uv[n - 1]) != tile(uv) {
-            points.push([f64::NAN; 2]);
-        }
-        points.push(place(uv));
-    }
-    points
-}
-
-/// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
-fn levels_panel(take: &Take<'_>) -> Panel {
-    let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
-    let mut panel = Panel::new(
-        "spectra",
-        frequency,
-        Axis::new("third-octave level", "dB re strongest").range(-70.0, 3.0),
-    );
-    let curves = take
-        .haptic
-        .first()
-        .map(|channel| ("felt", palette::HAPTIC, channel.samples))
-        .into_iter()
-        .chain([("heard", palette::AUDIO, take.audio)]);
-    for (label, colour, samples) in curves {
-        let bands = asperity_plot::third_octaves(samples, take.sample_rate_hz);
-        let top = bands.iter().map(|band| band[1]).fold(f64::NEG_INFINITY, f64::max);
-        if top.is_finite() {
-            let points = bands.iter().map(|[hz, db]| [*hz, db - top]).collect();
-            panel = panel.with(Layer::line(label, colour, Series::Points(points)));
-        }
-    }
-    panel
-}
-
-fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &HapticChannel<'_>) {
-    let number = if take.haptic.len() > 1 { format!(" {index}") } else { String::new() };
-    let values = channel.samples.iter().map(|&sample| f64::from(sample) * channel.full_scale);
-    let growing = match channel.felt_force_exponent {
-        0.0 => String::new(),
-        exponent => format!(", as felt: its own by (F / 1 N)^{exponent:.2}"),
-    };
-    let wave = Panel::new(
-        format!("haptic channel{number}: pad {}{growing}", channel.quantity),
-        time(take),
-        Axis::new(channel.quantity, channel.unit),
-    )
-    .with(Layer::line("", palette::HAPTIC, Series::signal(values, take.sample_rate_hz, 0.0)))
-    .with(impact_rules(take));
-    // 0 dB is 1 µm or 1 m/s².
-    let (unit, reference) = if channel.unit == "m" { ("dB re 1 µm", 1e-6) } else { ("dB re 1 m/s²", 1.0) };
-    let options = SpectrogramOptions {
-        window_s: 0.09,
-        from_hz: 5.0,
-        to_hz: 1_000.0,
-        range_db: 70.0,
-        unit: unit.to_owned(),
-        offset_db: 20.0 * (channel.full_scale / reference).log10(),
-        rows: 150,
-        ..SpectrogramOptions::default()
-    };
-    let spectrum = Panel::new("felt, by frequency", time(take), Axis::log("frequency", "Hz"))
-        .with(spectrogram(channel.samples, take.sample_rate_hz, &options));
-    figure.row(70.0, [wave]);
-    figure.row(140.0, [spectrum]);
-}
-
-fn audio_rows(figure: &mut Figure, take: &Take<'_>) {
-    let values = take.audio.iter().map(|&sample| f64::from(sample));
-    let wave = Panel::new("audio", time(take), Axis::new("sample value", ""))
-        .with(Layer::line("", palette::AUDIO, Series::signal(values, take.sample_rate_hz, 0.0)))
-        .with(impact_rules(take));
-    let options = SpectrogramOptions { unit: "dB re 1".to_owned(), ..SpectrogramOptions::default() };
-    let spectrum = Panel::new("heard, by frequency", time(take), Axis::log("frequency", "Hz"))
-        .with(spectrogram(take.audio, take.sample_rate_hz, &options));
-    figure.row(70.0, [wave]);
-    figure.row(190.0, [spectrum]);
 }

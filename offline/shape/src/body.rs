@@ -240,10 +240,27 @@ fn from_surface(
                 1e3 * finer_m
             ));
         }
-        if finest_m < 0.95 * spacing_m {
-            repairs.clear();
-            volume = body.fill(finest_m, &mut repairs)?;
-            modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 + 0.4 * done))?;
+        // Where that is too fine for the memory granted, half of the way.
+        for at_m in [finest_m, (finest_m * spacing_m).sqrt()] {
+            if at_m >= 0.95 * spacing_m {
+                break;
+            }
+            let mut repairs_there = Vec::new();
+            let finer = body.fill(at_m, &mut repairs_there).and_then(|volume| {
+                let progress = &mut |done| progress(0.6 + 0.4 * done);
+                Ok((solved(&volume, material, &making.wanted, progress)?, volume))
+            });
+            match finer {
+                Ok(finer) => {
+                    ((modes, volume), repairs) = (finer, repairs_there);
+                    break;
+                }
+                Err(error) => told.push(format!(
+                    "points every {:.2} mm, which the highest modes want, cannot be solved for ({}): they are too high",
+                    1e3 * at_m,
+                    error.what
+                )),
+            }
         }
     }
     told.append(&mut repairs);

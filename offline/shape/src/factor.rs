@@ -17,6 +17,10 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
+/// Most numbers of a factor: with all the rest 2 GB. A thin body has fewer for its unknowns than
+/// a chunky one.
+const MOST_NUMBERS: usize = 220_000_000;
+
 /// The order of elimination and the pattern of the factor; the same for every shift.
 #[derive(Debug)]
 pub struct Symbolic(SymbolicCholesky<u32>);
@@ -37,7 +41,7 @@ impl Symbolic {
     /// dissection, whichever fills less.
     ///
     /// # Errors
-    /// When memory runs out.
+    /// When memory runs out, or the factor would have more than [`MOST_NUMBERS`].
     pub fn of(system: &System) -> Result<Self, ShapeError> {
         let (starts, rows, _) = system.shifted(0.0);
         let n = system.unknowns();
@@ -60,7 +64,15 @@ impl Symbolic {
         }
         let dissected = with(SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)))?;
         let smaller = dissected.len_val() < minimum_degree.len_val();
-        Ok(Self(if smaller { dissected } else { minimum_degree }))
+        let symbolic = if smaller { dissected } else { minimum_degree };
+        let numbers = symbolic.len_val();
+        if numbers > MOST_NUMBERS {
+            let what = format!(
+                "is too fine for a body as thick as it is: its {n} unknowns make {numbers} numbers of work"
+            );
+            return Err(ShapeError::new("", what, format!("at most {MOST_NUMBERS}: mesh it coarser")));
+        }
+        Ok(Self(symbolic))
     }
 
     /// Factors K − σM for a σ below all modes.

@@ -16,6 +16,7 @@ use crate::surface_mesh::SurfaceMesh;
 use crate::triangle_tree::TriangleTree;
 use crate::vector::{Vec3, distance, longest_side, mean};
 use crate::volume_mesh::{EDGES, FACES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, sorted, tet_volume_m3};
+use rustc_hash::FxHashMap;
 use std::collections::{HashMap, HashSet};
 
 /// Spacing over wall thickness at most: beyond that quadratic elements get stiff in bending.
@@ -101,14 +102,15 @@ impl Body {
             .iter()
             .filter_map(|&(a, b, line, from, to)| Some((numbers[a]?, numbers[b]?, line, from, to)))
             .collect::<Vec<_>>();
-        let mut kept = self.inside(&delaunay);
+        let mut known = FxHashMap::default();
+        let mut kept = self.inside(&delaunay, &mut known);
         for _ in 0..ROUNDS {
             let added = self.join_segments(&mut delaunay, &samples, &mut segments, spacing_m)
                 + self.refine(&mut delaunay, &kept, spacing_m);
             if added == 0 {
                 break;
             }
-            kept = self.inside(&delaunay);
+            kept = self.inside(&delaunay, &mut known);
         }
         peel(&mut kept, delaunay.points());
         let mut mesh = VolumeMesh { points: delaunay.points().to_vec(), tets: kept };
@@ -210,15 +212,17 @@ impl Body {
         (whole * hits / f64::from(darts), 1.0 / hits.max(1.0).sqrt())
     }
 
-    /// The tetrahedra inside.
-    fn inside(&self, delaunay: &Delaunay) -> Vec<[u32; 4]> {
+    /// The tetrahedra inside; of those of an earlier round that is `known`.
+    fn inside(&self, delaunay: &Delaunay, known: &mut FxHashMap<[u32; 4], bool>) -> Vec<[u32; 4]> {
         let points = delaunay.points();
         let corners = |t: &[u32; 4]| t.map(|i| points[i as usize]);
-        delaunay
-            .tets()
-            .into_iter()
-            .filter(|t| tet_volume_m3(corners(t)) > 0.0 && self.tree.contains(mean(corners(t))))
-            .collect()
+        let mut is_inside = |t: &[u32; 4]| {
+            let mut name = *t;
+            name.sort_unstable();
+            let look = || tet_volume_m3(corners(t)) > 0.0 && self.tree.contains(mean(corners(t)));
+            *known.entry(name).or_insert_with(look)
+        };
+        delaunay.tets().into_iter().filter(&mut is_inside).collect()
     }
 
     /// Puts a point on each sharp edge between two neighbours that the mesh does not join.

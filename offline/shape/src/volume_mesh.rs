@@ -5,7 +5,7 @@ use crate::vector::{Vec3, cross, dot, longest_side, sub};
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 
-/// Most unknowns that are solved for; a chunky body of that many needs about 2 GiB.
+/// Most unknowns that are solved for; chunky bodies end sooner, by their factor's numbers.
 pub const MOST_DEGREES_OF_FREEDOM: usize = 150_000;
 /// Longest side accepted, m.
 pub const LONGEST_SIDE_M: f64 = 1e4;

@@ -34,6 +34,25 @@ fn a_telephone_picture_is_turned_as_its_exif_says() {
 }
 
 #[test]
+fn a_file_of_another_kind_is_refused_by_its_name_and_told_what_to_convert_it_to() {
+    for (bytes, kind, instead) in [
+        (&b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"[..], "Radiance HDR", "EXR"),
+        (b"\xabKTX 20\xbb\r\n\x1a\n", "KTX2", "PNG"),
+        (b"DDS |\0\0\0", "DDS", "PNG"),
+        (b"8BPS\0\x01", "PSD", "flatten"),
+        (b"\xff\x0a\xfa\x1f", "JPEG XL", "PNG"),
+        (b"\0\0\x01\0\x01\0", "ICO", "PNG"),
+        (b"\0\0\0\x20ftypavif", "AVIF", "PNG"),
+        (b"\0\0\0\x18ftypheic", "HEIC", "PNG"),
+        (b"<!DOCTYPE html>", "a web page", "download"),
+    ] {
+        let error = read_channel(bytes, Channel::Luma).unwrap_err();
+        let (right, text) = (matches!(error, Problem::OtherFormat { .. }), error.to_string());
+        assert!(right && text.contains(kind) && text.contains(instead), "{text}");
+    }
+}
+
+#[test]
 fn a_gif_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.gif");

@@ -11,8 +11,11 @@
 //! recording's cells do not reach. A band whose missing power never stands 9 dB over the floor has
 //! no entry, so a made sum of modes in noise has no table.
 //!
-//! Measured outside the engine on nine household recordings: mean level error 10.7 dB with modes
-//! alone, 3.1 with the bands, loudness where the recording has none 1.3 points more.
+//! Decays are known as far as four seconds show them: bells and gongs leave a bed that rings for
+//! longer than two. Measured outside the engine on 37 household recordings that nothing was tuned
+//! on, beside a burst of 40 ms, with the recording's floor under both: median level error of the
+//! cells 10.7 dB with modes alone, 3.3 with both; of the cells 30 and 3 % more than 10 dB too low;
+//! loudness where the recording has none 1.7 points more.
 
 use asperity_dsp::diffuse::{DiffuseBand, DiffusePart, band_edges_hz};
 use asperity_fft::FftPlanner;
@@ -23,7 +26,7 @@ const STEP_S: f64 = 0.01;
 const FRAME_S: f64 = 0.023;
 const SMOOTHED: usize = 5;
 /// Longest part that is looked at, in steps.
-const MOST_FRAMES: usize = 200;
+const MOST_FRAMES: usize = 400;
 /// Edges of all bands, Hz.
 const BAND_HZ: (f64, f64) = (60.0, 18_000.0);
 /// Floor over the tenth part of the cells, and what counts over it, as factors.
@@ -38,7 +41,7 @@ const FEWEST_CELLS: usize = 3;
 /// Ringing times (60 dB) that are tried: the shortest and the longest, s, and the factor between
 /// two.
 /// A factor of 1.5 misses decays so far that levels at the start are 5 dB off.
-const T60_S: (f64, f64) = (0.02, 2.6);
+const T60_S: (f64, f64) = (0.02, 8.0);
 const T60_STEP: f64 = 1.15;
 /// Levels of the faster part over the slower one that are tried.
 const RATIOS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
