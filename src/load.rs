@@ -185,13 +185,13 @@ fn assemble(
         workers: overrides.live.then_some(&workers),
     };
     let Engine { mut scene, renderer, mut names, mut remarks, .. } =
-        config.build().map_err(|error| at(FileError::told(error)))?;
+        config.build().map_err(|error| at(FileError::from_error(error)))?;
     for (name, probe) in &file.probes {
         let place = |error: FileError| at(error.within(format!("probe \"{name}\"")));
-        let id = scene.add_probe(*probe).map_err(|error| place(FileError::told(error)))?;
+        let id = scene.add_probe(*probe).map_err(|error| place(FileError::from_error(error)))?;
         let Config { integrator, .. } = *scene.config();
         let contact = MicroContact::new(probe, integrator, scene.config().inner_rate_hz());
-        let contact = contact.map_err(|error| place(FileError::told(error)))?;
+        let contact = contact.map_err(|error| place(FileError::from_error(error)))?;
         remarks.extend(remark(contact.choice()).map(|remark| format!("probe \"{name}\": {remark}")));
         names.probes.insert(name.clone(), id);
     }
@@ -199,7 +199,7 @@ fn assemble(
     for (entry, strike_gain) in file.bodies.iter().zip(&levels.strike_gain) {
         let place = |error: FileError| at(error.within(format!("body \"{}\"", entry.name)));
         let body = maker.body(entry, &file.audio, &levels.gain, *strike_gain).map_err(place)?;
-        let id = scene.add_body(body).map_err(|error| place(FileError::told(error)))?;
+        let id = scene.add_body(body).map_err(|error| place(FileError::from_error(error)))?;
         names.bodies.insert(entry.name.clone(), id);
     }
     for entry in &file.surfaces {
@@ -207,7 +207,7 @@ fn assemble(
         let body = file.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
         let material = body.and_then(|body| body.material);
         let surface = maker.surface(entry, material, &names).map_err(place)?;
-        let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
+        let id = scene.add_surface(surface).map_err(|error| place(FileError::from_error(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
     let workers = workers.into_inner();

@@ -1,4 +1,4 @@
-//! The list of parameters is what the reader of scene files accepts and what `docs/formats.md`
+//! The list of parameters is what the reader of scene files accepts and what `docs/formats/scene.md`
 //! says.
 //!
 //! `ASPERITY_WRITE_DOCS=1 cargo test --release parameters::` writes the tables of the document
@@ -9,7 +9,7 @@ use asperity::parameters::{ALL, Changes, Parameter};
 use std::fmt::Write;
 use std::path::Path;
 
-const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/formats.md");
+const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/formats/scene.md");
 const BEGIN: &str = "<!-- parameters -->\n";
 const END: &str = "<!-- end of parameters -->";
 

@@ -105,7 +105,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 
 fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> Result<(), CliError> {
     let started = Instant::now();
-    let set = DataSet::open(Spec::load(spec).map_err(CliError::told)?, folder).map_err(CliError::told)?;
+    let set = DataSet::open(Spec::load(spec).map_err(CliError::from_error)?, folder)
+        .map_err(CliError::from_error)?;
     let says = &set.spec().says;
     let share = options.shard.or_else(|| share_of_slurm(|name| std::env::var(name).ok()));
     let share = share.unwrap_or(Share { index: 0, of: 1 });
@@ -124,7 +125,7 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         warnings: set.empty_parts().into_iter().collect(),
     };
     for index in mine {
-        match set.shard(index, || progress.advance(1)).map_err(CliError::told)? {
+        match set.shard(index, || progress.advance(1)).map_err(CliError::from_error)? {
             Outcome::Made { clipped } => {
                 report.made += 1;
                 report.clipped_samples += clipped;
@@ -133,7 +134,7 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         }
     }
     drop(progress);
-    report.shards_there = set.write_manifest().map_err(CliError::told)?.shards.len() as u64;
+    report.shards_there = set.write_manifest().map_err(CliError::from_error)?.shards.len() as u64;
     report.seconds = started.elapsed().as_secs_f64();
     report.warnings.extend(set.remarks());
     if report.clipped_samples > 0 {
@@ -167,9 +168,10 @@ struct Checked {
 }
 
 fn check(options: &VerifyOptions) -> Result<(), CliError> {
-    let shards = asperity_batch::manifest::Manifest::load(&options.folder).map_err(CliError::told)?;
+    let shards = asperity_batch::manifest::Manifest::load(&options.folder).map_err(CliError::from_error)?;
     let mut progress = Progress::new("shards", shards.map_or(0, |manifest| manifest.shards.len() as u64));
-    let found = verify(&options.folder, options.sample, || progress.advance(1)).map_err(CliError::told)?;
+    let found =
+        verify(&options.folder, options.sample, || progress.advance(1)).map_err(CliError::from_error)?;
     drop(progress);
     if options.json {
         return output::say_json(&Checked {

@@ -33,8 +33,8 @@ impl CliError {
 
     /// An error that another crate has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it
     /// says.
-    pub fn told(text: impl fmt::Display) -> Self {
-        Self(FileError::told(text))
+    pub fn from_error(text: impl fmt::Display) -> Self {
+        Self(FileError::from_error(text))
     }
 
     /// Puts an error of a field into its file or table: `WHERE: ` is written before what it names.

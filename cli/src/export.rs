@@ -63,7 +63,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let (mut document, mut report) =
         (Document::default(), Report { bodies: 0, modes: 0, warnings: Vec::new(), files: Vec::new() });
     for path in &options.bodies {
-        let model = ModalModel::load(path).map_err(CliError::told)?;
+        let model = ModalModel::load(path).map_err(CliError::from_error)?;
         output::reads(["glb", "shapes"].map(|ending| path.with_extension(ending)));
         let Some(shapes) = &model.shapes else {
             let right = "must be of version 2 with shapes, as `asperity modes` writes it";

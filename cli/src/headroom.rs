@@ -170,7 +170,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 }
 
 fn refused(error: impl std::fmt::Display) -> CliError {
-    CliError::told(error).within("headroom")
+    CliError::from_error(error).within("headroom")
 }
 
 fn scene(name: &str, load: Load, threads: u8) -> Result<SceneRow, CliError> {

@@ -26,7 +26,7 @@ pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError>
     output::reads(devices.flatten().map(|device| folder.join(device)));
     let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
     let (log, unread) =
-        ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::told)?;
+        ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::from_error)?;
     // A surface that an edit adds is not the file's.
     let has_frame =
         |name: &str| file.surfaces.iter().all(|entry| entry.name != name || entry.frame.is_some());

@@ -170,7 +170,7 @@ impl Body {
                 if options.size.is_none() || options.material.is_none() {
                     assumed.push(format!("a {name} of {of}, {size_m} m (--material, --size)"));
                 }
-                let model = stock.modes(&material, size_m).map_err(CliError::told)?;
+                let model = stock.modes(&material, size_m).map_err(CliError::from_error)?;
                 table.insert("stock".into(), Value::String(name.clone()));
                 table.insert("size_m".into(), Value::Float(size_m));
                 table.insert("material".into(), Value::String(of.to_owned()));
@@ -193,7 +193,7 @@ impl Body {
                 modes
             }
         };
-        let model = ModalModel::load(&modes).map_err(CliError::told)?;
+        let model = ModalModel::load(&modes).map_err(CliError::from_error)?;
         table.insert("modes".into(), Value::String(modes.to_string_lossy().into_owned()));
         if let Some(name) = options.material.and_then(|material| material.name()) {
             table.insert("material".into(), Value::String(name.to_owned()));

@@ -54,7 +54,7 @@ fn grey(path: &Path) -> Result<Raster, CliError> {
 
 /// One channel of a picture, 0–1.
 fn channel(path: &Path, channel: Channel) -> Result<Raster, CliError> {
-    image_io::load_channel(path, channel).map(|image| image.raster).map_err(CliError::told)
+    image_io::load_channel(path, channel).map(|image| image.raster).map_err(CliError::from_error)
 }
 
 /// A refused parameter or picture, at the file it came from.

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use support::{asperity, told};
 
-/// The shipped scenes that are chaotic, as `docs/formats.md` lists them.
+/// The shipped scenes that are chaotic, as `docs/formats/scene.md` lists them.
 const CHAOTIC: [&str; 1] = ["scraped"];
 
 /// Contractive: what is left of the difference, dB of the signal.
@@ -74,8 +74,12 @@ fn every_scene_of_the_demo_repeats_to_the_waveform_or_is_listed_as_chaotic() {
     }
     chaotic.sort();
     assert_eq!(chaotic, CHAOTIC);
-    let formats = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/formats.md")).unwrap();
+    let formats =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/formats/scene.md")).unwrap();
     for name in CHAOTIC {
-        assert!(formats.contains(&format!("| demo: `{name}` |")), "docs/formats.md does not list {name}");
+        assert!(
+            formats.contains(&format!("| demo: `{name}` |")),
+            "docs/formats/scene.md does not list {name}"
+        );
     }
 }

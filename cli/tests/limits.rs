@@ -109,7 +109,8 @@ fn what_lies_beyond_a_limit_is_refused_with_its_key_and_the_range() {
 
 #[test]
 fn the_documents_print_every_range() {
-    let formats = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/formats.md")).unwrap();
+    let formats =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/formats/scene.md")).unwrap();
     let reports = [
         ("uv", limits::UV),
         ("velocity_m_s", limits::VELOCITY_M_S),
@@ -122,6 +123,6 @@ fn the_documents_print_every_range() {
     ];
     for (key, range) in ALL.iter().map(|(_, key, range)| (*key, *range)).chain(reports) {
         let row = format!("`{key}` | {}", range.words);
-        assert!(formats.contains(&row), "docs/formats.md lacks\n{row}");
+        assert!(formats.contains(&row), "docs/formats/scene.md lacks\n{row}");
     }
 }

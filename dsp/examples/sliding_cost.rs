@@ -8,7 +8,7 @@
 
 use asperity_dsp::hertz::{FORCE_HISTORY, FORCE_TAPS};
 use asperity_dsp::modal_bank::{
-    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    FreeResponse, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
     design_groups,
 };
 use asperity_dsp::mode::Mode;
@@ -28,7 +28,7 @@ type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 struct Body {
     sound: Bank,
-    ahead: Vec<AheadGroup>,
+    ahead: Vec<FreeResponse>,
     answer: Answer,
     coupled: Coupled,
     gains: Vec<LaneGains>,
@@ -58,7 +58,10 @@ impl Body {
         answer.add_modes(Level::detect(), &squares, RATE_HZ).unwrap();
         Self {
             sound: bank(&modes, &GroupOptions::IMPULSE_RING),
-            ahead: speeds.chunks(LANES).map(|speeds| AheadGroup::design(speeds, RATE_HZ).unwrap()).collect(),
+            ahead: speeds
+                .chunks(LANES)
+                .map(|speeds| FreeResponse::design(speeds, RATE_HZ).unwrap())
+                .collect(),
             answer,
             coupled: Coupled::begin(Level::detect()),
             gains: vec![LaneGains([PHI as f32; 16]); count.div_ceil(16)],

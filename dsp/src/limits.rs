@@ -1,5 +1,5 @@
 //! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files
-//! quote it, and `docs/formats.md` prints it.
+//! quote it, and `docs/formats/scene.md` prints it.
 //!
 //! A value outside is refused where it enters, by name; one inside is rendered as it is.
 

@@ -2,7 +2,7 @@
 //! any cut into blocks.
 
 use asperity_dsp::modal_bank::{
-    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    FreeResponse, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
     design_groups, lane_gains,
 };
 use asperity_dsp::mode::Mode;
@@ -18,7 +18,7 @@ type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 /// A body that is rubbed at one place: its modes, and φ of each there.
 struct Rubbed {
     sound: Bank,
-    ahead: Vec<AheadGroup>,
+    ahead: Vec<FreeResponse>,
     answer: Answer,
     gains: Vec<LaneGains>,
     coupled: Coupled,
@@ -41,7 +41,7 @@ impl Rubbed {
         let states = vec![GroupState::REST; groups.len()].into();
         Self {
             sound: ModalBank::new(level, groups, states),
-            ahead: speed.chunks(LANES).map(|speeds| AheadGroup::design(speeds, rate_hz).unwrap()).collect(),
+            ahead: speed.chunks(LANES).map(|speeds| FreeResponse::design(speeds, rate_hz).unwrap()).collect(),
             answer,
             gains: lane_gains(modes.iter().map(|(_, phi)| *phi as f32)).collect(),
             coupled: Coupled::begin(level),
@@ -268,8 +268,8 @@ fn modes_above_half_of_the_rate_do_not_yield_and_impossible_ones_are_refused() {
     assert_eq!(answer, Answer::RIGID);
     assert_eq!(place_speed(&mode(30_000.0, 1.0), 1.0, 44_100.0).unwrap().amplitude, 0.0);
     assert_eq!(place_speed(&mode(-1.0, 1.0), 1.0, 44_100.0).unwrap_err().field, "frequency_hz");
-    assert_eq!(AheadGroup::design(&[mode(30_000.0, 1.0)], 44_100.0).unwrap(), AheadGroup::SILENT);
-    assert_eq!(AheadGroup::design(&[mode(100.0, -1.0)], 44_100.0).unwrap_err().field, "decay_per_s");
+    assert_eq!(FreeResponse::design(&[mode(30_000.0, 1.0)], 44_100.0).unwrap(), FreeResponse::SILENT);
+    assert_eq!(FreeResponse::design(&[mode(100.0, -1.0)], 44_100.0).unwrap_err().field, "decay_per_s");
 }
 
 #[test]
@@ -296,8 +296,8 @@ fn what_a_bank_says_ahead_is_what_another_bank_of_its_modes_sounds_like_afterwar
                 ModalBank::new(level, groups, states).sleeping_below(0.0)
             };
             let (mut sound, mut other) = (bank(&modes), bank(&heard));
-            let ahead: Vec<AheadGroup> =
-                heard.chunks(LANES).map(|modes| AheadGroup::design(modes, rate_hz).unwrap()).collect();
+            let ahead: Vec<FreeResponse> =
+                heard.chunks(LANES).map(|modes| FreeResponse::design(modes, rate_hz).unwrap()).collect();
             let struck: Vec<f32> = (0..3 * CELL).map(|_| rng.normal() as f32).collect();
             sound.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);
             other.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);

@@ -3,7 +3,9 @@
 
 use crate::profiles;
 
-use asperity_dsp::micro_contact::{Bends, ContactSample, GroundBetween, Integrator, MicroContact, Probe};
+use asperity_dsp::micro_contact::{
+    ContactSample, Integrator, MicroContact, Probe, QuarticCorrections, SubSampleProfile,
+};
 use profiles::{HELD_OUT, Profile, SUITE};
 use std::sync::OnceLock;
 
@@ -192,16 +194,16 @@ fn over_quick_waves(times: usize, known: Known, cuts: usize) -> Vec<ContactSampl
     };
     let [at, first, midway, second] = [0.0, 0.75, 0.5, 0.25].map(heights);
     let (mut bends, mut halves) = (vec![[0.0; 4]; count], vec![[[0.0; 4]; 2]; count]);
-    Bends::default().midway(design.level(), &at, &midway, &mut bends);
-    Bends::default().quarters(design.level(), &at, &midway, [&first, &second], &mut halves);
+    QuarticCorrections::default().midway(design.level(), &at, &midway, &mut bends);
+    QuarticCorrections::default().quarters(design.level(), &at, &midway, [&first, &second], &mut halves);
     let (forces, mut state) = (vec![0.1; count], design.at_rest(at[0], 0.1));
     let mut out = vec![ContactSample::default(); count];
     for (n, rows) in out.chunks_mut(cuts).enumerate() {
         let now = n * cuts..n * cuts + rows.len();
         let ground = match known {
-            Known::Nothing => GroundBetween::AtSamples,
-            Known::Midway => GroundBetween::Midway(&bends[now.clone()]),
-            Known::Quarters => GroundBetween::Quarters(&halves[now.clone()]),
+            Known::Nothing => SubSampleProfile::AtSamples,
+            Known::Midway => SubSampleProfile::Midway(&bends[now.clone()]),
+            Known::Quarters => SubSampleProfile::Quarters(&halves[now.clone()]),
         };
         design.run_over(&mut state, &at[now.clone()], &forces[now], ground, rows);
     }
@@ -234,7 +236,7 @@ fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
     }
     // A height that is no number bends nothing.
     let design = MicroContact::new(&linear(), Integrator::ExactEvent, RATE_HZ).unwrap();
-    let rows = |ground: GroundBetween<'_>| {
+    let rows = |ground: SubSampleProfile<'_>| {
         let (mut state, mut out) = (design.at_rest(0.0, 0.5), [ContactSample::default(); 100]);
         let heights: Vec<f64> = (0..100).map(|n| 1e-6 * (0.3 * f64::from(n)).sin()).collect();
         design.run_over(&mut state, &heights, &[0.5; 100], ground, &mut out);
@@ -242,9 +244,15 @@ fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
     };
     for bend in [f64::NAN, f64::INFINITY, 1e9] {
         let [wrong, none] = [bend, 0.0].map(|bend| [[bend, 0.0, 0.0, 0.0]; 100]);
-        assert!(rows(GroundBetween::Midway(&wrong)) == rows(GroundBetween::Midway(&none)), "{bend}");
-        assert!(rows(GroundBetween::Midway(&none[..7])) == rows(GroundBetween::Midway(&none)), "missing");
+        assert!(rows(SubSampleProfile::Midway(&wrong)) == rows(SubSampleProfile::Midway(&none)), "{bend}");
+        assert!(
+            rows(SubSampleProfile::Midway(&none[..7])) == rows(SubSampleProfile::Midway(&none)),
+            "missing"
+        );
         let [wrong, none] = [wrong, none].map(|bends| bends.map(|bend| [[0.0; 4], bend]));
-        assert!(rows(GroundBetween::Quarters(&wrong)) == rows(GroundBetween::Quarters(&none)), "{bend}");
+        assert!(
+            rows(SubSampleProfile::Quarters(&wrong)) == rows(SubSampleProfile::Quarters(&none)),
+            "{bend}"
+        );
     }
 }

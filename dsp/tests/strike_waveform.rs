@@ -2,7 +2,7 @@
 //! convolved with the modes.
 
 use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
-use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, design_groups};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, OnsetCorrection, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;
@@ -81,7 +81,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     let groups = groups.collect::<Result<Vec<_>, _>>().unwrap();
     let states = vec![GroupState::REST; groups.len()];
     let mut bank = ModalBank::new(Level::detect(), groups, states);
-    let first = FirstSamples::new(modes.iter().copied(), rate_hz).unwrap();
+    let first = OnsetCorrection::new(modes.iter().copied(), rate_hz).unwrap();
     let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: contact_s };
     let ring = (count + 512).next_power_of_two();
     let (mut impulses, mut early) = (vec![0.0; ring], vec![0.0; ring]);

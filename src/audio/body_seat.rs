@@ -7,10 +7,10 @@ use crate::model::body::{Body, MAX_SENDS, Sends};
 use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::Owner;
-use crate::resource::body::{BodySlot, Terms};
+use crate::resource::bank::ContactKey;
+use crate::resource::body::{BodySlot, RenderArgs};
 use crate::resource::body_rub::RubAsked;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(crate) struct BodySeat {
     /// The name of what is here; none where a body rings out.
     id: Option<BodyId>,
     bus: usize,
-    shares: [Share; SHARES],
+    shares: [Task; SHARES],
     /// It sounds on its own bus and no other, as loud as it is.
     alone: bool,
     /// Linear gain, and the way there.
@@ -43,7 +43,7 @@ const SHARES: usize = 2 * (MAX_SENDS + 1);
 
 /// A bus that a body sounds on: how loud, and the way there.
 #[derive(Clone, Copy)]
-struct Share {
+struct Task {
     bus: usize,
     gain: f64,
     smoothed: Smoothed,
@@ -51,7 +51,7 @@ struct Share {
 
 /// Time in which a body that is damped fades, s: 4096 samples at 44.1 kHz.
 const FADE_S: f64 = 4096.0 / 44_100.0;
-impl Share {
+impl Task {
     fn go_to(&mut self, gain: f64) {
         self.gain = gain;
     }
@@ -78,7 +78,7 @@ impl BodySeat {
             of: None,
             id: None,
             bus: 0,
-            shares: [Share { bus: 0, gain: 0.0, smoothed: Smoothed::settled(0.0, sample_rate_hz) }; SHARES],
+            shares: [Task { bus: 0, gain: 0.0, smoothed: Smoothed::settled(0.0, sample_rate_hz) }; SHARES],
             alone: false,
             gain: 1.0,
             smoothed: Smoothed::new(sample_rate_hz),
@@ -112,10 +112,10 @@ impl BodySeat {
         if self.id != Some(id) {
             (self.id, self.bus) = (Some(id), bus);
             self.shares.iter_mut().for_each(|share| share.go_to(0.0));
-            self.shares.iter_mut().for_each(Share::arrive);
+            self.shares.iter_mut().for_each(Task::arrive);
             self.send_to(bus, 1.0);
             sends.iter().flatten().for_each(|(bus, gain)| self.send_to(*bus, *gain));
-            self.shares.iter_mut().for_each(Share::arrive);
+            self.shares.iter_mut().for_each(Task::arrive);
             self.smoothed.set(gain);
         } else if self.bus != bus {
             self.play_on(bus);
@@ -140,7 +140,7 @@ impl BodySeat {
     /// Sounds so loud on a bus from now on, whatever it does on others.
     pub(crate) fn send_to(&mut self, bus: usize, gain: f64) {
         let place = self.shares.iter().position(|share| share.bus == bus && !share.is_over());
-        let place = place.or_else(|| self.shares.iter().position(Share::is_over));
+        let place = place.or_else(|| self.shares.iter().position(Task::is_over));
         // If a body goes from bus to bus many times within a fade, the oldest ends at once.
         let share = &mut self.shares[place.unwrap_or(0)];
         if share.bus != bus {
@@ -221,7 +221,7 @@ impl BodySeat {
     /// Adds an impact whose contact begins at `stamp`.
     pub(crate) fn strike(
         &mut self,
-        spot: &Spot,
+        spot: &StrikePoint,
         pulse: &HertzPulse,
         stamp: Stamp,
         mode_level: usize,
@@ -240,7 +240,7 @@ impl BodySeat {
     }
 
     /// A contact presses on the body of that name.
-    pub(crate) fn press(&mut self, id: BodyId, owner: Owner, place: &StrikePlace, probe: &Probe) {
+    pub(crate) fn press(&mut self, id: BodyId, owner: ContactKey, place: &StrikePlace, probe: &Probe) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.press(owner, place, probe);
         }
@@ -253,18 +253,29 @@ impl BodySeat {
     }
 
     /// As [`touch`](Self::touch), at a place of its own.
-    pub(crate) fn touch_at(&mut self, id: BodyId, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+    pub(crate) fn touch_at(
+        &mut self,
+        id: BodyId,
+        owner: ContactKey,
+        spot: &StrikePoint,
+        impulse_n_s: &[f64],
+    ) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.touch_at(owner, spot, impulse_n_s);
         }
     }
 
     /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes
-    /// were left out. `rung` is what the bank has sounded like and left out, where another thread
+    /// were left out. `entry` is what the bank has sounded like and left out, where another thread
     /// has rung it already.
-    pub(crate) fn render(&mut self, terms: Terms, rung: Option<(&[f32], usize)>, out: &mut [f32]) -> usize {
+    pub(crate) fn render(
+        &mut self,
+        terms: RenderArgs,
+        entry: Option<(&[f32], usize)>,
+        out: &mut [f32],
+    ) -> usize {
         let Some(body) = &mut self.current else { return 0 };
-        let Some((sound, left_out)) = rung else { return body.render(terms, out) };
+        let Some((sound, left_out)) = entry else { return body.render(terms, out) };
         out.iter_mut().zip(sound).for_each(|(sum, x)| *sum += x);
         body.add_strikes(terms.position, out);
         left_out

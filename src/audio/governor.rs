@@ -27,7 +27,7 @@
 //! *Its own lateness only.* A block may be late because the host did something else, and leaving
 //! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
 //! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`LATE`] while that
-//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a share of 1
+//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. SampleRange a share of 1
 //! % up to 15 late blocks in a row change nothing; work that does not fit is answered after 16
 //! blocks.
 //!
@@ -36,9 +36,9 @@
 
 use crate::resource::bank::MODE_LEVELS;
 
-/// Share of the period from which a block counts as late.
+/// Task of the period from which a block counts as late.
 pub(crate) const LATE: f32 = 0.8;
-/// Share of the period below which there is room for more work.
+/// Task of the period below which there is room for more work.
 pub(crate) const EASY: f32 = 0.5;
 /// Time that the load must be easy for one level back, s.
 pub(crate) const RECOVERY_S: f64 = 0.5;
@@ -180,7 +180,7 @@ mod tests {
     }
 
     /// Levels of modes and numbers of contacts, level by level, until nothing more goes.
-    fn ladder(work: Work) -> Vec<(usize, usize)> {
+    fn stiffness_table(work: Work) -> Vec<(usize, usize)> {
         let at = |late: usize| {
             let governor = working(work, [0.7; MEDIAN_OF].into_iter().chain(vec![0.9; late]));
             (governor.level as usize == late).then(|| (governor.mode_level(), governor.contacts(64)))
@@ -191,24 +191,24 @@ mod tests {
     #[test]
     fn modes_go_before_contacts_where_they_are_a_tenth_and_with_them_where_they_are_not() {
         let silent = Work { contacts: 10, modes: 0, spared: 0 };
-        let contacts: Vec<usize> = ladder(silent).iter().map(|(_, contacts)| *contacts).collect();
+        let contacts: Vec<usize> = stiffness_table(silent).iter().map(|(_, contacts)| *contacts).collect();
         assert_eq!(contacts, [64, 9, 8, 7, 6, 5, 4, 3, 2]);
-        assert_eq!(ladder(RINGING), [(0, 64), (1, 64), (1, 8), (1, 6), (1, 4), (1, 2)]);
+        assert_eq!(stiffness_table(RINGING), [(0, 64), (1, 64), (1, 8), (1, 6), (1, 4), (1, 2)]);
         assert_eq!(after(vec![0.9; 100]).contacts(64), 2);
         let small = Work { contacts: 10, modes: 100, spared: 40 };
-        assert_eq!(ladder(small), [(0, 64), (1, 8), (1, 6), (1, 4), (1, 2)]);
+        assert_eq!(stiffness_table(small), [(0, 64), (1, 8), (1, 6), (1, 4), (1, 2)]);
     }
 
     #[test]
     fn four_fingers_on_a_small_body_come_back_after_three_half_seconds_because_no_level_is_empty() {
         let few = Work { contacts: 4, modes: 100, spared: 40 };
-        assert_eq!(ladder(few), [(0, 64), (1, 3), (1, 2), (1, 1)]);
+        assert_eq!(stiffness_table(few), [(0, 64), (1, 3), (1, 2), (1, 1)]);
         // One finger, or none on a body whose modes are all heard: nothing can go.
-        assert_eq!(ladder(Work { contacts: 1, ..few }), [(0, 64)]);
-        assert_eq!(ladder(Work { contacts: 0, modes: 100, spared: 0 }), [(0, 64)]);
+        assert_eq!(stiffness_table(Work { contacts: 1, ..few }), [(0, 64)]);
+        assert_eq!(stiffness_table(Work { contacts: 0, modes: 100, spared: 0 }), [(0, 64)]);
         // A body that rings alone, and one finger on thousands of modes.
-        assert_eq!(ladder(Work { contacts: 0, ..few }), [(0, 64), (1, 64)]);
-        assert_eq!(ladder(Work { contacts: 1, modes: 4096, spared: 3000 }), [(0, 64), (1, 64)]);
+        assert_eq!(stiffness_table(Work { contacts: 0, ..few }), [(0, 64), (1, 64)]);
+        assert_eq!(stiffness_table(Work { contacts: 1, modes: 4096, spared: 3000 }), [(0, 64), (1, 64)]);
     }
 
     /// Costs in modes, as [`MODES_A_CONTACT`] weighs them.
@@ -219,7 +219,7 @@ mod tests {
                 let cost = |(level, left): &(usize, usize)| {
                     (modes - level * spared) + MODES_A_CONTACT * (*left).min(contacts)
                 };
-                for pair in ladder(Work { contacts, modes, spared }).windows(2) {
+                for pair in stiffness_table(Work { contacts, modes, spared }).windows(2) {
                     let (before, after) = (cost(&pair[0]), cost(&pair[1]));
                     assert!(10 * (before - after) >= before, "{contacts}, {modes}: {pair:?}");
                 }

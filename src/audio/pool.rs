@@ -37,12 +37,12 @@ pub(crate) trait Job: Send + 'static {
 /// Threads beside the one that owns this.
 pub(crate) struct Pool<J> {
     queues: Arc<Queues<J>>,
-    helpers: Vec<Helper>,
+    helpers: Vec<Worker>,
     /// Jobs that were sent out and have not come home.
     out: usize,
 }
 
-struct Helper {
+struct Worker {
     thread: JoinHandle<()>,
     /// The process that has it: threads do not come along into a child of `fork`.
     process: u32,
@@ -74,7 +74,7 @@ impl<J: Job> Pool<J> {
             let named = Builder::new().name(format!("asperity-{}", index + 1));
             // If one cannot be had, those there are end with the pool.
             let thread = named.spawn(move || queues.help(index, &mut room))?;
-            pool.helpers.push(Helper { thread, process: std::process::id() });
+            pool.helpers.push(Worker { thread, process: std::process::id() });
         }
         Ok(pool)
     }
@@ -172,7 +172,7 @@ fn look_again(looks: &mut u32) {
 impl<J> Drop for Pool<J> {
     fn drop(&mut self) {
         self.queues.ends.store(true, SeqCst);
-        for Helper { thread, process } in self.helpers.drain(..) {
+        for Worker { thread, process } in self.helpers.drain(..) {
             if process != std::process::id() {
                 // Nothing is there to wait for or to let go.
                 std::mem::forget(thread);

@@ -6,18 +6,18 @@
 //! bits.
 
 mod contacts;
-mod crew;
 mod hand_over;
 mod messages;
 mod meter;
 mod outputs;
+mod render_pool;
 mod tails;
 mod voices;
 
 use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::governor::{Governor, LATE, Work};
-use crate::audio::occupied::Occupied;
+use crate::audio::index_set::IndexSet;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
@@ -40,8 +40,8 @@ use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_surface::height_field::MAX_BLOCK;
 use contacts::SilentContact;
-use crew::Crew;
 use outputs::{Bus, HapticChannel, Mix};
+use render_pool::RenderPool;
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -63,12 +63,12 @@ pub struct Renderer {
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
-    /// At the places that the game names, and behind them those that ring out.
+    /// SampleRange the places that the game names, and behind them those that ring out.
     bodies: Vec<BodySeat>,
     /// Which of the three are in use, so that empty places cost nothing.
-    voices_used: Occupied,
-    seats_used: Occupied,
-    bodies_used: Occupied,
+    voices_used: IndexSet,
+    seats_used: IndexSet,
+    bodies_used: IndexSet,
     channels: Vec<HapticChannel>,
     buses: Vec<Bus>,
     blows: Blows,
@@ -85,7 +85,7 @@ pub struct Renderer {
     /// On its way to silence or back.
     master: Smoothed,
     /// Other threads, where there are any.
-    crew: Option<Crew>,
+    crew: Option<RenderPool>,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -118,7 +118,7 @@ impl Renderer {
         let voices = config.voices();
         let bodies = config.max_bodies + TAILS;
         let sizes = (voices, config.max_surfaces, bodies);
-        let crew = (config.threads > 1).then(|| Crew::new(config.threads, sizes, &shared)).transpose();
+        let crew = (config.threads > 1).then(|| RenderPool::new(config.threads, sizes, &shared)).transpose();
         let crew =
             crew.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
         Ok(Self {
@@ -128,9 +128,9 @@ impl Renderer {
             max_contacts: config.max_contacts,
             voices: (0..voices).map(|slot| Box::new(Voice::free(slot, &shared))).collect(),
             placed: vec![None; voices],
-            voices_used: Occupied::new(voices),
-            seats_used: Occupied::new(config.max_surfaces),
-            bodies_used: Occupied::new(bodies),
+            voices_used: IndexSet::new(voices),
+            seats_used: IndexSet::new(config.max_surfaces),
+            bodies_used: IndexSet::new(bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
             bodies: (0..bodies).map(|_| BodySeat::new(rate)).collect(),

@@ -8,7 +8,7 @@ use crate::link::message::Retired;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::resource::overlay::{NoiseWay, OnTheWay, Room, ShortWaves, TileCells};
+use crate::resource::overlay::{BetweenQuery, NoiseQuery, Room, ShortWaves, TileCells};
 use crate::resource::stroking::Stroking;
 use crate::resource::surface::SurfaceSlot;
 
@@ -47,7 +47,7 @@ pub(crate) struct Noise<'a> {
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
-    pub(crate) between: Option<(OnTheWay, &'a mut ShortWaves)>,
+    pub(crate) between: Option<(BetweenQuery, &'a mut ShortWaves)>,
 }
 
 /// Consequence of setting a surface for the contacts on it.
@@ -353,7 +353,7 @@ impl SurfaceSlot {
             let along = NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m };
             self.overlay.add(
                 noise.field,
-                &NoiseWay { path: along, bounds_m, share, power_m2: &out.power.each_m2[..n] },
+                &NoiseQuery { path: along, bounds_m, share, power_m2: &out.power.each_m2[..n] },
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),

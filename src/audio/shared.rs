@@ -57,7 +57,7 @@ impl Shared {
 /// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`]
 /// samples.
 #[derive(Clone, Copy)]
-pub(crate) struct Stretch<'a> {
+pub(crate) struct Segment<'a> {
     pub(crate) shared: &'a Shared,
     /// Output of the contact's actuator.
     pub(crate) output: &'a ContactOutput,
@@ -67,7 +67,7 @@ pub(crate) struct Stretch<'a> {
     pub(crate) n: usize,
 }
 
-impl Stretch<'_> {
+impl Segment<'_> {
     /// Tests whether it begins at a step of the absolute grid.
     pub(crate) fn is_on_grid(self) -> bool {
         self.position.is_multiple_of(MAX_BLOCK as u64)
@@ -76,14 +76,14 @@ impl Stretch<'_> {
 
 /// The samples at hand, for whoever renders voices.
 #[derive(Clone, Copy)]
-pub(crate) struct At {
+pub(crate) struct SampleRange {
     /// Absolute index of the first sample.
     pub(crate) position: u64,
     /// Number.
     pub(crate) n: usize,
 }
 
-impl At {
+impl SampleRange {
     /// Tests whether they begin at a step of the absolute grid.
     pub(crate) fn is_on_grid(self) -> bool {
         self.position.is_multiple_of(MAX_BLOCK as u64)

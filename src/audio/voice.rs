@@ -23,9 +23,9 @@ mod tap;
 pub(crate) use block::{Scratch, VoiceBlock};
 pub(crate) use events::EMPTY_FORCE_N;
 
-use crate::audio::role::Role;
+use crate::audio::binding::Binding;
 use crate::audio::seat::Seat;
-use crate::audio::shared::{Shared, Stretch};
+use crate::audio::shared::{Segment, Shared};
 use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
@@ -61,7 +61,7 @@ pub(crate) enum Phase {
 pub(crate) struct Voice {
     pub(crate) contact: ContactId,
     pub(crate) surface: usize,
-    pub(crate) role: Role,
+    pub(crate) role: Binding,
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
@@ -105,7 +105,7 @@ impl Voice {
         Self {
             contact: ContactId(0),
             surface: 0,
-            role: Role::default(),
+            role: Binding::default(),
             phase: Phase::Free,
             begun: 0,
             refreshed: 0,
@@ -161,7 +161,7 @@ impl Voice {
     /// of the absolute grid.
     pub(crate) fn render<T: Tap>(
         &mut self,
-        stretch: Stretch<'_>,
+        stretch: Segment<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
         tap: &mut T,
@@ -190,16 +190,16 @@ impl Voice {
     }
 
     /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it.
-    fn until_silent<'a>(&self, stretch: Stretch<'a>) -> Stretch<'a> {
+    fn until_silent<'a>(&self, stretch: Segment<'a>) -> Segment<'a> {
         match self.phase {
-            Phase::Fading { left } => Stretch { n: stretch.n.min(left as usize), ..stretch },
+            Phase::Fading { left } => Segment { n: stretch.n.min(left as usize), ..stretch },
             Phase::Free | Phase::Sounding => stretch,
         }
     }
 
     /// Touches the surface at the steps of the absolute grid, before its heights are sampled. A
     /// sleeping contact still touches, and wakes when the ground stirs.
-    fn touch(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
+    fn touch(&mut self, stretch: Segment<'_>, seat: &mut Seat) {
         if stretch.is_on_grid() {
             self.reaction = seat.touch(&self.touch_at(stretch.position));
             self.asleep &= !self.reaction.stirs;
@@ -208,8 +208,8 @@ impl Voice {
 
     /// Updates what is slow, at the steps of the absolute grid; most short stretches have none.
     #[inline(never)]
-    fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
-        let Stretch { shared, output, position, .. } = stretch;
+    fn take_slow_step(&mut self, stretch: Segment<'_>, seat: &mut Seat, scratch: &mut Scratch) {
+        let Segment { shared, output, position, .. } = stretch;
         if !position.is_multiple_of(shared.slow_step) {
             return;
         }
@@ -227,11 +227,11 @@ impl Voice {
         } else {
             self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
         }
-        self.look_between(shared, seat);
+        self.sample_between(shared, seat);
     }
 
     /// Path: reports become a point every sample.
-    fn follow_path(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
+    fn follow_path(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Some(slot) = seat.current() else { return };
         let Scratch { points, profile, .. } = scratch;
         self.path.run(slot, &mut points[..stretch.n], &mut profile.at_m);
@@ -240,12 +240,12 @@ impl Voice {
     /// Profile: the height under each point.
     fn sample_profile(
         &mut self,
-        stretch: Stretch<'_>,
+        stretch: Segment<'_>,
         is_watched: bool,
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        let Stretch { shared, output, position, n } = stretch;
+        let Segment { shared, output, position, n } = stretch;
         let Scratch { points, profile, .. } = scratch;
         let slopes = is_watched || output.quantity() == Quantity::Tangential;
         let between = self.between.on_the_way(self.path.last.position_m);
@@ -255,9 +255,9 @@ impl Voice {
     }
 
     /// Pad: heights and forces become rows.
-    fn run_pad(&mut self, Stretch { shared, n, .. }: Stretch<'_>, scratch: &mut Scratch) {
-        let Scratch { profile, bends, rows, out, .. } = scratch;
-        let ground = self.between.ground(shared, &profile.short, n, bends);
+    fn run_pad(&mut self, Segment { shared, n, .. }: Segment<'_>, scratch: &mut Scratch) {
+        let Scratch { profile, quartic_correction, rows, out, .. } = scratch;
+        let ground = self.between.ground(shared, &profile.short, n, quartic_correction);
         let (heights_m, rows) = (&profile.surface.height_m[..n], &mut rows[..n]);
         self.pad.run(heights_m, &profile.force_n[..n], ground, rows);
         if let Some(roughness) = profile.surface.roughness[..n].last() {
@@ -267,8 +267,8 @@ impl Voice {
     }
 
     /// Coupling: the pad's motion becomes what is felt, the contact force what is heard.
-    fn couple(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
-        let Stretch { shared, output, position, n } = stretch;
+    fn couple(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
+        let Segment { shared, output, position, n } = stretch;
         let Some(slot) = seat.current() else { return };
         let Scratch { points, rows, profile, force_n_s, out, .. } = scratch;
         let sounds = slot.surface.excitation.has(Exciter::Force);
@@ -292,8 +292,8 @@ impl Voice {
 
     /// Exciters: rows, coupled force and the ground's grains become impulses on the body, friction
     /// what rubs it.
-    fn excite(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
-        let Stretch { shared, position, n, .. } = stretch;
+    fn excite(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
+        let Segment { shared, position, n, .. } = stretch;
         let Some(slot) = seat.current() else { return };
         let Scratch { points, rows, force_n_s, out, .. } = scratch;
         let (points, rows) = (&points[..n], &rows[..n]);
@@ -307,7 +307,7 @@ impl Voice {
     }
 
     /// State in which the stretch leaves the contact.
-    fn finish(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
+    fn finish(&mut self, stretch: Segment<'_>, scratch: &Scratch) {
         if self.phase == Phase::Free {
             return;
         }

@@ -38,7 +38,7 @@ impl Config {
         } else {
             toml::from_str(text).map_err(|error: toml::de::Error| refuse(error.message()))?
         };
-        config.check().map_err(|error| FileError::told(error).within("config"))?;
+        config.check().map_err(|error| FileError::from_error(error).within("config"))?;
         Ok(config)
     }
 }

@@ -30,7 +30,7 @@ impl FileError {
 
     /// An error that another type has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it
     /// says.
-    pub fn told(text: impl fmt::Display) -> Self {
+    pub fn from_error(text: impl fmt::Display) -> Self {
         let text = text.to_string();
         let (front, right) = text.rsplit_once("; ").unwrap_or((&text, "see `asperity --help`"));
         let (at, what) = front.split_once(": ").unwrap_or(("asperity", front));
@@ -100,9 +100,9 @@ mod tests {
 
     #[test]
     fn errors_of_other_types_keep_their_words() {
-        let line = FileError::told("gain: 3 is refused; must be 0 to 1").within("audio").to_string();
+        let line = FileError::from_error("gain: 3 is refused; must be 0 to 1").within("audio").to_string();
         assert_eq!(line, "audio: gain: 3 is refused; must be 0 to 1");
-        assert_eq!(FileError::told("broken").to_string(), "asperity: broken; see `asperity --help`");
+        assert_eq!(FileError::from_error("broken").to_string(), "asperity: broken; see `asperity --help`");
     }
 
     #[test]

@@ -57,7 +57,7 @@ fn of_text(text: &str) -> Option<(&'static str, &'static str)> {
     let first = head.lines().next().unwrap_or_default();
     if first.matches([',', ';', '\t']).count() > 1 && !first.contains(['=', '[', '{', '#']) {
         let right =
-            "a scene is TOML, a contact log one JSON object a line; docs/formats.md has the keys of both";
+            "a scene is TOML, a contact log one JSON object a line; docs/formats has the keys of both";
         return Some(("is a table (CSV), not a scene", right));
     }
     let is_mesh = head.lines().any(|line| line.starts_with("v "))

@@ -134,7 +134,7 @@ pub(crate) fn channel(files: &dyn Files, image: &Pixels) -> Result<ChannelImage,
     };
     read.map_err(|problem| match problem {
         Problem::Io(error) => FileError::read(path, &error),
-        problem => FileError::told(format!("{}: {problem}", path.display())),
+        problem => FileError::from_error(format!("{}: {problem}", path.display())),
     })
 }
 

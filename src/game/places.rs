@@ -1,7 +1,7 @@
 //! A table whose places are used again and again, under names that are not.
 
 use crate::model::error::AddError;
-use crate::model::id::Place;
+use crate::model::id::SlotKey;
 
 /// Table of surfaces, bodies or probes on the game half, by place.
 pub(crate) struct Places<T> {
@@ -24,47 +24,47 @@ impl<T> Places<T> {
     }
 
     /// The name under which the next occupant will be known.
-    pub(crate) fn free(&self) -> Result<Place, AddError> {
+    pub(crate) fn free(&self) -> Result<SlotKey, AddError> {
         let free = |slot: &Slot<T>| slot.occupant.is_none() && slot.generation < u32::MAX;
         let index = self
             .slots
             .iter()
             .position(free)
             .ok_or(AddError::Full { kind: self.kind, capacity: self.slots.len() })?;
-        Ok(Place { index: index as u32, generation: self.slots[index].generation })
+        Ok(SlotKey { index: index as u32, generation: self.slots[index].generation })
     }
 
     /// Puts an occupant under a name that is [`free`](Self::free), or in the place of the one that
     /// bears it.
-    pub(crate) fn set(&mut self, name: Place, occupant: T) {
+    pub(crate) fn set(&mut self, name: SlotKey, occupant: T) {
         if let Some(slot) = self.slot(name) {
             slot.occupant = Some(occupant);
         }
     }
 
     /// The occupant of that name.
-    pub(crate) fn get(&self, name: Place) -> Option<&T> {
+    pub(crate) fn get(&self, name: SlotKey) -> Option<&T> {
         let slot = self.slots.get(name.index as usize).filter(|slot| slot.generation == name.generation)?;
         slot.occupant.as_ref()
     }
 
     /// All occupants, with their names.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (Place, &T)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (SlotKey, &T)> {
         self.slots.iter().enumerate().filter_map(|(index, slot)| {
-            let name = Place { index: index as u32, generation: slot.generation };
+            let name = SlotKey { index: index as u32, generation: slot.generation };
             slot.occupant.as_ref().map(|occupant| (name, occupant))
         })
     }
 
     /// Empties a place; its name is never given again.
-    pub(crate) fn remove(&mut self, name: Place) {
+    pub(crate) fn remove(&mut self, name: SlotKey) {
         if let Some(slot) = self.slot(name).filter(|slot| slot.occupant.is_some()) {
             slot.occupant = None;
             slot.generation += 1;
         }
     }
 
-    fn slot(&mut self, name: Place) -> Option<&mut Slot<T>> {
+    fn slot(&mut self, name: SlotKey) -> Option<&mut Slot<T>> {
         self.slots.get_mut(name.index as usize).filter(|slot| slot.generation == name.generation)
     }
 
@@ -96,7 +96,7 @@ mod tests {
             places.remove(name);
             places.set(name, 7);
         }
-        assert_eq!(places.get(Place { index: 0, generation: 101 }), Some(&100));
+        assert_eq!(places.get(SlotKey { index: 0, generation: 101 }), Some(&100));
     }
 
     #[test]
@@ -106,7 +106,7 @@ mod tests {
         let last = places.free().unwrap();
         places.set(last, "last");
         places.remove(last);
-        assert_eq!(places.free().unwrap(), Place { index: 1, generation: 1 });
+        assert_eq!(places.free().unwrap(), SlotKey { index: 1, generation: 1 });
         places.set(places.free().unwrap(), "elsewhere");
         assert!(matches!(places.free(), Err(AddError::Full { kind: "bodies", capacity: 2 })));
         assert!(places.get(last).is_none());

@@ -2,7 +2,7 @@
 
 use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, LogTouching, Names};
 use crate::model::event::{ChannelId, ContactEvent};
-use crate::model::id::{BodyId, Place, ProbeId, SurfaceId};
+use crate::model::id::{BodyId, ProbeId, SlotKey, SurfaceId};
 use std::collections::{HashMap, VecDeque};
 use std::io::{self, BufWriter, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -210,6 +210,6 @@ fn unless_one(factor: f64) -> Option<f64> {
 }
 
 /// Name of a thing without one: its place, and which of its occupants, from the second on.
-fn numbered(kind: &str, Place { index, generation }: Place) -> String {
+fn numbered(kind: &str, SlotKey { index, generation }: SlotKey) -> String {
     if generation == 1 { format!("{kind} {index}") } else { format!("{kind} {index}.{generation}") }
 }

@@ -25,7 +25,7 @@ use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
 use crate::model::body::Body;
 use crate::model::config::Config;
-use crate::model::contact_sample::Place;
+use crate::model::contact_sample::Placement;
 use crate::model::error::AddError;
 use crate::model::event::{ContactEvent, ContactId};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
@@ -108,7 +108,7 @@ struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
     spin: Spin,
-    /// Place of its probe; none = the engine's own.
+    /// Placement of its probe; none = the engine's own.
     probe: Option<usize>,
     /// The gain that the game has told, and whether nobody feels it.
     gain: f64,
@@ -122,7 +122,7 @@ pub(crate) struct KnownSurface {
     rings: bool,
     /// Picture, if it changes.
     picture: Option<Arc<MovingPicture>>,
-    place: Place,
+    place: Placement,
     sheet: Sheet,
     tip_law: Option<TipLaw>,
     body: Option<BodyId>,
@@ -290,7 +290,7 @@ impl Scene {
         let overlay = Overlay::new(period_m, properties.band.shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.compliance_m_n > 0.0 || properties.tip_law.is_some();
-        let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
+        let place = Placement { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
         let sheet = Sheet { size_m: place.size_m, period_m };
         let on = surface.body;
         let picture = properties.picture.clone();

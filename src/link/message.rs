@@ -8,7 +8,7 @@ use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::body::BodySlot;
 use crate::resource::probe::PreparedProbe;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use crate::resource::stroking::Stroking;
 use crate::resource::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
@@ -25,7 +25,7 @@ pub(crate) enum Message {
         /// The clock's epoch when it was reported.
         epoch: u64,
         body: usize,
-        spot: Spot,
+        spot: StrikePoint,
         other: Option<usize>,
         holder: Option<usize>,
         felt: Option<Felt>,

@@ -81,7 +81,7 @@ impl Scene {
     ) -> Result<(), FileError> {
         for (index, (old, new)) in before.audio.iter().zip(&after.audio).enumerate() {
             if let Some(gain) = new.gain.filter(|gain| old.gain != Some(*gain)) {
-                self.set_audio_gain(BusId(index), gain).map_err(FileError::told)?;
+                self.set_audio_gain(BusId(index), gain).map_err(FileError::from_error)?;
                 changes.done.push(format!("audio {}: gain {gain}", index + 1));
             }
         }
@@ -99,7 +99,7 @@ impl Scene {
             if after.surfaces.iter().all(|entry| entry.name != *name)
                 && let Some(id) = names.surfaces.get(name)
             {
-                self.remove_surface(*id).map_err(FileError::told)?;
+                self.remove_surface(*id).map_err(FileError::from_error)?;
                 names.surfaces.remove(name);
                 changes.done.push(format!("surface \"{name}\": removed"));
             }
@@ -108,7 +108,7 @@ impl Scene {
             if after.bodies.iter().all(|entry| entry.name != *name)
                 && let Some(id) = names.bodies.get(name)
             {
-                self.remove_body(*id).map_err(FileError::told)?;
+                self.remove_body(*id).map_err(FileError::from_error)?;
                 names.bodies.remove(name);
                 changes.done.push(format!("body \"{name}\": removed"));
             }
@@ -166,7 +166,7 @@ impl<'a> New<'a> {
 
     fn put(self, scene: &mut Scene, names: &mut Names, changes: &mut Changes) -> Result<(), FileError> {
         for (name, probe) in self.probes {
-            let id = scene.add_probe(*probe).map_err(FileError::told)?;
+            let id = scene.add_probe(*probe).map_err(FileError::from_error)?;
             names.probes.insert(name.clone(), id);
             changes.done.push(format!("probe \"{name}\": added"));
         }
@@ -178,7 +178,8 @@ impl<'a> New<'a> {
                     "added"
                 }),
             };
-            let word = word.map_err(|error| FileError::told(error).within(format!("body \"{name}\"")))?;
+            let word =
+                word.map_err(|error| FileError::from_error(error).within(format!("body \"{name}\"")))?;
             changes.done.push(format!("body \"{name}\": {word}"));
         }
         for (SurfaceEntry { name, body, .. }, mut surface) in self.surfaces {
@@ -192,7 +193,8 @@ impl<'a> New<'a> {
                     "added"
                 }),
             };
-            let word = word.map_err(|error| FileError::told(error).within(format!("surface \"{name}\"")))?;
+            let word =
+                word.map_err(|error| FileError::from_error(error).within(format!("surface \"{name}\"")))?;
             changes.done.push(format!("surface \"{name}\": {word}"));
         }
         Ok(())

@@ -42,12 +42,14 @@ impl Edits<'_> {
     ) -> Result<(), FileError> {
         match edit {
             LogEdit::AddBody { body, is } => {
-                let id = scene.add_body(is.body().map_err(FileError::told)?).map_err(FileError::told)?;
+                let id = scene
+                    .add_body(is.body().map_err(FileError::from_error)?)
+                    .map_err(FileError::from_error)?;
                 names.bodies.insert(body.clone(), id);
                 Ok(())
             }
             LogEdit::ReplaceBody { body, is } => {
-                let new = is.body().map_err(FileError::told)?;
+                let new = is.body().map_err(FileError::from_error)?;
                 scene.replace_body(known_body(names, body)?, new)
             }
             LogEdit::BodyBus { body, bus } => scene.set_body_bus(known_body(names, body)?, BusId(*bus)),
@@ -85,7 +87,7 @@ impl Edits<'_> {
             LogEdit::HapticGain { actuator, gain } => scene.set_haptic_gain(ChannelId(*actuator), *gain),
             LogEdit::AudioGain { bus, gain } => scene.set_audio_gain(BusId(*bus), *gain),
         }
-        .map_err(FileError::told)
+        .map_err(FileError::from_error)
     }
 
     fn surface(

@@ -83,7 +83,8 @@ pub(super) fn resolve(
     let trials = Trials::of(file, calibrated);
     let Engine { scene, renderer, names, .. } = assemble(&plain)?;
     let options = Options { tail_s: 0.3, ..Options::default() };
-    let render = offline::render(scene, renderer, &trials.log, &names, &options).map_err(FileError::told)?;
+    let render =
+        offline::render(scene, renderer, &trials.log, &names, &options).map_err(FileError::from_error)?;
     for (channel, level) in levels.full_scale.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
         let kind = file.actuators[channel].settings.output;
         let strongest = trials.strongest(&render, |stroke| {

@@ -30,12 +30,12 @@ impl<'a> Loader<'a> {
     ) -> Result<Body, FileError> {
         let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
         let mut model = match (&entry.modes, entry.stock) {
-            (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
-            (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::told)?,
+            (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::from_error)?,
+            (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::from_error)?,
             (None, None) => ModalModel::silent(),
         };
         if entry.radiation {
-            let told = |error| FileError::told(error).within(format!("body \"{}\"", entry.name));
+            let told = |error| FileError::from_error(error).within(format!("body \"{}\"", entry.name));
             model = model.radiating(&material).map_err(told)?;
         }
         if !entry.diffuse {
@@ -43,7 +43,7 @@ impl<'a> Loader<'a> {
         }
         if let Some(gain) = entry.residual {
             let residual = model.residual.take();
-            model = model.with_residual(residual, gain).map_err(FileError::told)?;
+            model = model.with_residual(residual, gain).map_err(FileError::from_error)?;
         }
         let bus =
             entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
@@ -54,7 +54,7 @@ impl<'a> Loader<'a> {
             // A gain that nobody wrote is there for the other bodies of the bus.
             let found = gains.get(bus).filter(|_| audio[bus].gain.is_none());
             let gain = found.filter(|gain| **gain > 0.0).unwrap_or(&1.0);
-            model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::told)?;
+            model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::from_error)?;
         }
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
         let body = Body::new(model).material(material).bus(BusId(bus));
@@ -79,7 +79,8 @@ impl<'a> Loader<'a> {
     ) -> Result<Surface, FileError> {
         let ground = self.ground(entry);
         let source = ground.source(&entry.source)?;
-        let surface = Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::told)?;
+        let surface =
+            Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::from_error)?;
         let surface = match (material, &entry.source) {
             (Some(material), Source::Flat) => surface.material(material),
             // How rough a pictured surface is, its material does not tell: it may be glazed or
@@ -176,7 +177,9 @@ fn device(
     let at = format!("actuator: {field}");
     if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
         let preset = ActuatorPreset::load_from(files, folder.join(name));
-        return preset.map(|preset| Some(preset.profile)).map_err(|error| FileError::told(error).within(at));
+        return preset
+            .map(|preset| Some(preset.profile))
+            .map_err(|error| FileError::from_error(error).within(at));
     }
     let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
     Err(FileError::new(at, format!("\"{name}\" is unknown"), right))

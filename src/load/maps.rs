@@ -41,7 +41,7 @@ impl MapOf {
             raster.values.iter_mut().for_each(|value| *value = 1.0 - *value);
         }
         HeightMap::new(&raster, self.extent, self.wrap)
-            .map_err(|error| FileError::told(error).within(self.image.path.display()))
+            .map_err(|error| FileError::from_error(error).within(self.image.path.display()))
     }
 }
 

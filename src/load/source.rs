@@ -40,7 +40,7 @@ impl Ground<'_> {
         Ok(match source {
             Source::Flat => Box::new(
                 HeightMap::flat(self.extent, crate::model::surface::DEFAULT_ROUGHNESS)
-                    .map_err(FileError::told)?,
+                    .map_err(FileError::from_error)?,
             ),
             Source::Map { image, relief_m, invert } => {
                 let extent = Extent { relief_m: *relief_m, ..self.extent };
@@ -56,7 +56,7 @@ impl Ground<'_> {
             }
             Source::Scale(source, factor) => {
                 let scale = Scale::new(self.source(source)?, *factor);
-                Box::new(scale.map_err(|error| FileError::told(error).within("scale"))?)
+                Box::new(scale.map_err(|error| FileError::from_error(error).within("scale"))?)
             }
             Source::Mask { image, inside, outside } => {
                 let mask = self.map(image, false, self.extent)?;
@@ -125,7 +125,7 @@ impl Ground<'_> {
 
     fn solid(self, parameters: &SolidNoiseParameters, seed: Option<u64>) -> Result<SolidNoise, FileError> {
         let noise = SolidNoise::new(*parameters, seed.unwrap_or(self.maker.seed))
-            .map_err(|error| FileError::told(error).within("solid"))?;
+            .map_err(|error| FileError::from_error(error).within("solid"))?;
         Ok(match self.frame {
             Some(frame) => {
                 let [u_axis, v_axis] = frame.axes();
@@ -142,7 +142,7 @@ impl Ground<'_> {
 
     #[cfg(feature = "brownian")]
     fn brownian(self, entry: &Brownian) -> Result<Boxed, FileError> {
-        let told = |error| FileError::told(error).within("brownian");
+        let told = |error| FileError::from_error(error).within("brownian");
         let mut design = BrownianDesign::new(entry.hurst, entry.rms_m, entry.seed.unwrap_or(self.maker.seed));
         let rendering = entry.force;
         if entry.graph {
@@ -157,7 +157,7 @@ impl Ground<'_> {
         // it.
         let side_m = self.extent.width_m.max(self.extent.height_m);
         let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
-        let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(FileError::told)?);
+        let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(FileError::from_error)?);
         let Some(rendering) = rendering else { return Ok(map) };
         let (low, high) = relief.range();
         let force = BrownianForce::surface(rendering, high - low).map_err(told)?;
@@ -182,7 +182,7 @@ impl Ground<'_> {
             );
             return Err(FileError::new("sand: cells", what, right));
         }
-        let told = |error| FileError::told(error).within("sand");
+        let told = |error| FileError::from_error(error).within("sand");
         let Some(workers) = self.maker.workers else {
             return SandSource::synchronous(&design, self.maker.seed).map_err(told);
         };
@@ -196,7 +196,7 @@ impl Ground<'_> {
         let cell = self.maker.maps.read(&entry.cell, "channel", self.maker.files)?.debanded(Wrap::Repeat);
         let cell = upright(cell, entry.invert);
         Lattice::new(&cell.map(|height| height * relief_m), entry.t1_m, entry.t2_m)
-            .map_err(|error| FileError::told(error).within("lattice"))
+            .map_err(|error| FileError::from_error(error).within("lattice"))
     }
 
     /// A picture of a tool's underside: white is no tool, the darkest point is the lowest.

@@ -14,7 +14,7 @@ use crate::model::error::Refusal;
 use crate::model::frame::SurfaceFrame;
 use asperity_dsp::limits;
 
-/// Place and manner of a contact at one instant.
+/// Placement and manner of a contact at one instant.
 ///
 /// ```
 /// use asperity::ContactSample;
@@ -41,7 +41,7 @@ pub struct ContactSample {
     /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin)
     /// only.
     pub closing_m_s: f64,
-    /// Place in the frame of the body that the surface belongs to, m.
+    /// Placement in the frame of the body that the surface belongs to, m.
     pub at_m: Option<[f64; 3]>,
     /// Depth of the tip below the untouched surface, m; below 0 it is above it. For surfaces that
     /// give way.
@@ -129,7 +129,7 @@ impl From<ContactSample> for Written {
 
 /// Data of a surface for placing a contact on it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct Placement {
     pub(crate) frame: Option<SurfaceFrame>,
     pub(crate) size_m: [f64; 2],
     /// True where it gives way.
@@ -242,7 +242,7 @@ impl ContactSample {
     /// On its surface: a place in a frame becomes texture coordinates and, where nothing else
     /// presses, a depth. On a surface without a frame the place stays what it is, and texture
     /// coordinates are needed beside it.
-    pub(crate) fn on(mut self, place: &Place) -> Result<Self, Refusal> {
+    pub(crate) fn on(mut self, place: &Placement) -> Result<Self, Refusal> {
         if let (Some(at_m), Some(frame)) = (self.at_m, place.frame) {
             for x in at_m {
                 within("at_m", x, limits::PLACE_M)?;

@@ -3,12 +3,12 @@
 /// A place in a scene's table and the number of the occupant, from 1 on, so that a name outlives
 /// what it named without ever naming what comes after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Place {
+pub(crate) struct SlotKey {
     pub(crate) index: u32,
     pub(crate) generation: u32,
 }
 
-impl Place {
+impl SlotKey {
     fn to_bits(self) -> u64 {
         u64::from(self.generation) << 32 | u64::from(self.index)
     }
@@ -26,14 +26,14 @@ macro_rules! ids {
         /// that one is gone, every call that is given its id refuses it, however often the place is
         /// used again.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub struct $name(pub(crate) Place);
+        pub struct $name(pub(crate) SlotKey);
 
         impl std::fmt::Display for $name {
             /// Its place, and from the second occupant on which one it is: `3`, `3.2`.
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 match self.0 {
-                    Place { index, generation: 0 | 1 } => write!(f, "{index}"),
-                    Place { index, generation } => write!(f, "{index}.{generation}"),
+                    SlotKey { index, generation: 0 | 1 } => write!(f, "{index}"),
+                    SlotKey { index, generation } => write!(f, "{index}.{generation}"),
                 }
             }
         }
@@ -49,7 +49,7 @@ macro_rules! ids {
             /// every call refuses.
             #[must_use]
             pub fn from_bits(bits: u64) -> Self {
-                Self(Place::from_bits(bits))
+                Self(SlotKey::from_bits(bits))
             }
 
             /// Index in the engine's tables.
@@ -75,10 +75,10 @@ mod tests {
 
     #[test]
     fn an_id_survives_as_a_number() {
-        let id = BodyId(Place { index: 7, generation: u32::MAX });
+        let id = BodyId(SlotKey { index: 7, generation: u32::MAX });
         assert_eq!((BodyId::from_bits(id.to_bits()), id.index()), (id, 7));
         assert_eq!(id.to_bits(), 0xffff_ffff_0000_0007);
         assert_eq!(id.to_string(), "7.4294967295");
-        assert_eq!(SurfaceId(Place { index: 3, generation: 1 }).to_string(), "3");
+        assert_eq!(SurfaceId(SlotKey { index: 3, generation: 1 }).to_string(), "3");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::model::modal_model::MAX_POSITIONS;
 use asperity_dsp::DesignError;
-use asperity_dsp::modal_bank::{FirstSamples, GroupState, LANES, MissingSamples, ModalBank, ModeGroup};
+use asperity_dsp::modal_bank::{GroupState, LANES, ModalBank, ModeGroup, OnsetCorrection, OnsetSamples};
 pub(crate) use asperity_dsp::modal_bank::{MODE_LEVELS, SheddingLevels};
 use asperity_dsp::mode::Mode;
 
@@ -14,7 +14,7 @@ pub const LONGEST_CONTACT_S: f64 = 0.17;
 pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 /// Which contact an input belongs to: a voice and the sample at which it began.
-pub(crate) type Owner = (usize, u64);
+pub(crate) type ContactKey = (usize, u64);
 
 /// Deficit of a bank of these modes in the first samples of a strike, for each place and each level
 /// of modes left out.
@@ -23,12 +23,12 @@ pub(crate) fn first_samples(
     places: usize,
     levels: &SheddingLevels,
     sample_rate_hz: f64,
-) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
-    let mut sums = vec![MissingSamples::NOTHING; places];
-    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
+) -> Result<Vec<[OnsetCorrection; MODE_LEVELS]>, DesignError> {
+    let mut sums = vec![OnsetSamples::NOTHING; places];
+    let mut all = vec![[OnsetCorrection::NOTHING; MODE_LEVELS]; places];
     for (group, modes) in modes.chunks(LANES).enumerate() {
         for (mode, shares) in modes {
-            let missing = MissingSamples::of(mode, sample_rate_hz)?;
+            let missing = OnsetSamples::of(mode, sample_rate_hz)?;
             for (sum, share) in sums.iter_mut().zip(shares) {
                 sum.add(&missing, f64::from(*share));
             }

@@ -4,19 +4,21 @@ use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, SheddingLevels, first_samples};
+use crate::resource::bank::{
+    Bank, ContactKey, LONGEST_CONTACT_S, MODE_LEVELS, SheddingLevels, first_samples,
+};
 use crate::resource::body_field::{BodyField, FIELD_INPUTS};
 use crate::resource::body_rub::{BodyRub, RubAsked};
 use crate::resource::bursts::Bursts;
 use crate::resource::diffuse::DiffuseSeat;
 use crate::resource::impulse_ring::ImpulseRing;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY};
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
+    self, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank, OnsetCorrection,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -64,7 +66,7 @@ struct Place {
     /// Gain of each lane; empty for the only position of a body.
     gains: Vec<LaneGains>,
     /// For each level of modes left out.
-    first_samples: [FirstSamples; MODE_LEVELS],
+    first_samples: [OnsetCorrection; MODE_LEVELS],
     bus: ImpulseRing,
     /// Impulses of contacts during the present stretch.
     contacts_n_s: [f64; MAX_BLOCK],
@@ -75,7 +77,7 @@ struct Place {
 
 /// Way of rendering a stretch.
 #[derive(Clone, Copy)]
-pub(crate) struct Terms {
+pub(crate) struct RenderArgs {
     /// Absolute index of the first sample.
     pub(crate) position: u64,
     /// Number of the [`MODE_LEVELS`] that are left out because blocks run late.
@@ -83,7 +85,11 @@ pub(crate) struct Terms {
 }
 
 impl Place {
-    fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
+    fn new(
+        gains: Vec<LaneGains>,
+        first_samples: [OnsetCorrection; MODE_LEVELS],
+        sample_rate_hz: f64,
+    ) -> Self {
         let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
         Self { gains, first_samples, bus, contacts_n_s, touched: false, input }
@@ -198,7 +204,7 @@ impl BodySlot {
     /// `mode_level`.
     pub(crate) fn strike(
         &mut self,
-        spot: &Spot,
+        spot: &StrikePoint,
         pulse: &HertzPulse,
         stamp: Stamp,
         mode_level: usize,
@@ -236,7 +242,7 @@ impl BodySlot {
     }
 
     /// Adds what one contact sends during the present stretch to where it is.
-    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+    pub(crate) fn touch_at(&mut self, owner: ContactKey, spot: &StrikePoint, impulse_n_s: &[f64]) {
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
         if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, impulse_n_s)) {
             self.touch(spot.position, impulse_n_s, 1.0);
@@ -246,7 +252,7 @@ impl BodySlot {
     }
 
     /// A contact presses at its place during the coming cell of the grid.
-    pub(crate) fn press(&mut self, owner: Owner, place: &StrikePlace, probe: &Probe) {
+    pub(crate) fn press(&mut self, owner: ContactKey, place: &StrikePlace, probe: &Probe) {
         if let Some(field) = &mut self.field {
             field.press(owner, place, probe);
         }
@@ -316,7 +322,7 @@ impl BodySlot {
 
     /// Tests whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.bank.awake() == 0
+        self.bank.active_groups() == 0
             && self.bursts.is_silent(position)
             && self.early.is_empty(position)
             && self.places.iter().all(|place| place.is_silent(position))
@@ -327,7 +333,7 @@ impl BodySlot {
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck
     /// it.
-    pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+    pub(crate) fn render(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
         let left_out = self.ring(terms, out);
         self.add_strikes(terms.position, out);
         left_out
@@ -347,7 +353,7 @@ impl BodySlot {
 
     /// [`render`](Self::render) without the first samples of strikes
     /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
-    pub(crate) fn ring(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+    pub(crate) fn ring(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
         if self.is_silent(terms.position) {
             self.end_stretch(terms.position, out.len());
             return 0;
@@ -371,7 +377,7 @@ impl BodySlot {
     }
 
     /// Adds what the bank answers to at most `MOST` inputs; how many groups of modes heard nothing.
-    fn ring_inputs<const MOST: usize>(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+    fn ring_inputs<const MOST: usize>(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
         let n = out.len();
         if let Some(field) = &mut self.field {
             field.gather(terms.position, n);

@@ -6,14 +6,14 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{Bank, LONGEST_CONTACT_S, Owner};
+use crate::resource::bank::{Bank, ContactKey, LONGEST_CONTACT_S};
 use crate::resource::holding::{HeldModes, Holding};
 use crate::resource::impulse_ring::ImpulseRing;
 use crate::resource::slider::{self, Slider};
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
-use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSamples, ModeGroup};
+use asperity_dsp::modal_bank::{Input, LANES, LaneGains, ModeGroup, OnsetCorrection, OnsetSamples};
 use asperity_dsp::mode::Mode;
 use asperity_surface::height_field::MAX_BLOCK;
 
@@ -32,7 +32,7 @@ pub(crate) struct BodyField {
     /// that the bank was designed with.
     motion: Box<[[f32; 3]]>,
     points: usize,
-    missing: Box<[MissingSamples]>,
+    missing: Box<[OnsetSamples]>,
     holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
@@ -69,7 +69,7 @@ impl BodyField {
             bus: ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz),
             input: [0.0; MAX_BLOCK],
         };
-        let missing = modes.iter().map(|(_, mode)| MissingSamples::of(mode, sample_rate_hz));
+        let missing = modes.iter().map(|(_, mode)| OnsetSamples::of(mode, sample_rate_hz));
         let missing = missing.collect::<Result<Box<[_]>, _>>()?;
         Ok(Some(Self {
             motion: motion.collect(),
@@ -92,7 +92,7 @@ impl BodyField {
         pulse: &HertzPulse,
         stamp: Stamp,
         driven: usize,
-    ) -> FirstSamples {
+    ) -> OnsetCorrection {
         let free = self.strikes.iter().position(|struck| struck.bus.is_empty(self.position));
         let soonest = || (0..STRIKES).min_by_key(|&i| self.strikes[i].bus.busy_until());
         let struck = &mut self.strikes[free.or_else(soonest).unwrap_or(0)];
@@ -100,7 +100,7 @@ impl BodyField {
             fill(&self.motion, self.points, place, &mut struck.gains);
         }
         struck.bus.deposit(pulse, stamp.sample(), stamp.fraction(), self.sample_rate_hz);
-        let mut sum = MissingSamples::NOTHING;
+        let mut sum = OnsetSamples::NOTHING;
         let shares = struck.gains.iter().flat_map(|gains| gains.0);
         for (missing, share) in self.missing.iter().zip(shares).take(driven * LANES) {
             sum.add(missing, f64::from(share));
@@ -110,7 +110,7 @@ impl BodyField {
 
     /// Adds what a contact sends at its place during the present stretch; false where every slider
     /// is taken.
-    pub(crate) fn touch(&mut self, owner: Owner, place: &StrikePlace, impulse_n_s: &[f64]) -> bool {
+    pub(crate) fn touch(&mut self, owner: ContactKey, place: &StrikePlace, impulse_n_s: &[f64]) -> bool {
         let known = self.sliders.iter().position(|slider| slider.owner == Some(owner));
         // One that has not been touched for a cell is free.
         let idle = |slider: &Slider| {
@@ -125,7 +125,7 @@ impl BodyField {
     }
 
     /// A contact presses here during the coming cell.
-    pub(crate) fn press(&mut self, owner: Owner, place: &StrikePlace, probe: &Probe) {
+    pub(crate) fn press(&mut self, owner: ContactKey, place: &StrikePlace, probe: &Probe) {
         let share = |mode: usize| place.motion(&self.motion[mode * self.points..][..self.points]);
         self.holding.press(owner, place, probe, share);
     }

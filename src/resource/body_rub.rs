@@ -9,14 +9,15 @@
 //! that begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
 
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{Bank, Owner};
+use crate::resource::bank::{Bank, ContactKey};
 use crate::resource::body_field::BodyField;
 use crate::resource::holding::HeldModes;
 use crate::resource::slider::{self, Slider};
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
-    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup, design_group,
+    FreeResponse, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    design_group,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -36,9 +37,9 @@ const STILL: Sweep = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s: 0.0
 
 /// Rubbing of a contact during a stretch.
 pub(crate) struct RubAsked<'a> {
-    pub(crate) owner: Owner,
+    pub(crate) owner: ContactKey,
     /// Place, and direction along the body.
-    pub(crate) spot: Spot,
+    pub(crate) spot: StrikePoint,
     pub(crate) friction: Friction,
     pub(crate) sweep_m_s: &'a [f64],
     pub(crate) normal_force_n: &'a [f64],
@@ -64,7 +65,7 @@ pub(crate) struct BodyRub {
     positions: Box<[Box<[LaneGains]>]>,
     /// The speed of the rubbed place: of the body by itself, and because of what strikes it within
     /// a cell.
-    ahead: Box<[AheadGroup]>,
+    ahead: Box<[FreeResponse]>,
     struck: Bank,
     /// The gains that each group of it was designed for, and whether its modes have changed since.
     designed: Box<[LaneGains]>,
@@ -76,7 +77,7 @@ pub(crate) struct BodyRub {
     slider: Slider,
     glide: f32,
     stage: Stage,
-    owner: Option<Owner>,
+    owner: Option<ContactKey>,
     friction: Friction,
     sweep: [Sweep; CELL],
     /// True where it was asked during the present stretch; cells since it was asked last.
@@ -109,7 +110,7 @@ impl BodyRub {
             modes: held,
             unit_per_sqrt_kg,
             positions,
-            ahead: vec![AheadGroup::SILENT; groups].into(),
+            ahead: vec![FreeResponse::SILENT; groups].into(),
             struck: ModalBank::new(kernel, silent, states).sleeping_below(0.0),
             designed: vec![LaneGains([0.0; LANES]); groups].into(),
             stale: vec![true; groups].into(),
@@ -184,7 +185,7 @@ impl BodyRub {
             let mut free_m_s = [0.0; CELL];
             sound.ahead(&self.ahead, &mut free_m_s);
             self.coupled.next_cell(&self.answer.0, &free_m_s);
-            if self.struck.awake() > 0 {
+            if self.struck.active_groups() > 0 {
                 self.struck.silence();
             }
         }
@@ -275,7 +276,7 @@ impl BodyRub {
         let (rate_hz, level, mut answer) = (self.sample_rate_hz, self.struck.level(), Answer::RIGID);
         let answers = answer.add_modes(level, &moves[..count], rate_hz);
         let struck = design_group(&speeds[..count], rate_hz, &SPEED);
-        let ahead = AheadGroup::design(&speeds[..count], rate_hz);
+        let ahead = FreeResponse::design(&speeds[..count], rate_hz);
         let (Ok(()), Ok(struck), Ok(ahead)) = (answers, struck, ahead) else { return };
         self.struck.retune(group, &struck);
         self.ahead[group] = ahead;

@@ -7,7 +7,7 @@
 
 use crate::model::mode_shapes::ModeShapes;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{Bank, Owner};
+use crate::resource::bank::{Bank, ContactKey};
 use asperity_dsp::held::{Hold, Pole, held};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{GroupOptions, LANES, ModeGroup, design_group};
@@ -58,7 +58,7 @@ impl HeldModes {
 
 /// One contact that presses.
 struct Press {
-    owner: Option<Owner>,
+    owner: Option<ContactKey>,
     /// It pressed during the present cell.
     here: bool,
     place: StrikePlace,
@@ -106,7 +106,7 @@ impl Holding {
     /// A contact presses during the coming cell; `share` is each mode's share in the field there.
     pub(crate) fn press(
         &mut self,
-        owner: Owner,
+        owner: ContactKey,
         place: &StrikePlace,
         probe: &Probe,
         share: impl Fn(usize) -> f32,
@@ -126,7 +126,7 @@ impl Holding {
         self.changed = true;
     }
 
-    /// At the end of a cell: who did not press has let go, and one group follows what has changed;
+    /// SampleRange the end of a cell: who did not press has let go, and one group follows what has changed;
     /// which it is.
     pub(crate) fn go_on(&mut self, bank: &mut Bank) -> Option<usize> {
         for press in &mut self.holds {

@@ -22,7 +22,7 @@ use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
 use asperity_surface::height_field::MAX_BLOCK;
-use asperity_surface::tiled::{Place, TileAxis};
+use asperity_surface::tiled::{TileAxis, TilePosition};
 use std::f64::consts::FRAC_PI_2;
 
 /// Layout of the noise on a surface.
@@ -74,12 +74,12 @@ const WAYS: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// Request for the short waves of the micro-noise between samples.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct OnTheWay {
+pub(crate) struct BetweenQuery {
     /// The coarsest octave that counts among them.
     pub(crate) octave: usize,
-    /// At the quarters too, and not midway only.
+    /// SampleRange the quarters too, and not midway only.
     pub(crate) quarters: bool,
-    /// Place before the first sample.
+    /// TilePosition before the first sample.
     pub(crate) from_m: [f64; 2],
 }
 
@@ -99,7 +99,7 @@ impl ShortWaves {
 }
 
 /// A path over the surface, and what is known of all of it.
-pub(crate) struct NoiseWay<'a> {
+pub(crate) struct NoiseQuery<'a> {
     pub(crate) path: NoisePath<'a>,
     /// Its least and greatest coordinates, those midway between samples included.
     pub(crate) bounds_m: [[f64; 2]; 2],
@@ -111,12 +111,12 @@ pub(crate) struct NoiseWay<'a> {
     pub(crate) power_m2: &'a [f64],
 }
 
-/// Place of a path in its lap of the tile, and what meets there.
+/// TilePosition of a path in its lap of the tile, and what meets there.
 struct Lap {
     /// Beginning of the lap that all of it lies in, if it is one.
     begin_m: [Option<f64>; 2],
     position_m: [[f64; 2]; MAX_BLOCK],
-    places: [[Place; 2]; MAX_BLOCK],
+    places: [[TilePosition; 2]; MAX_BLOCK],
     gains: [[[f64; 2]; 2]; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; MOST_SETS],
 }
@@ -127,7 +127,7 @@ const MOST_SETS: usize = 3;
 impl Room {
     pub(crate) const fn new() -> Self {
         let none = [0.0; MAX_BLOCK];
-        let nowhere = Place { at_m: 0.0, weight: 0.0, slope_per_m: 0.0 };
+        let nowhere = TilePosition { at_m: 0.0, weight: 0.0, slope_per_m: 0.0 };
         let lap = Lap {
             begin_m: [None; 2],
             position_m: [[0.0; 2]; MAX_BLOCK],
@@ -181,11 +181,11 @@ impl Overlay {
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
-        NoiseWay { path, bounds_m: [low_m, high_m], share, power_m2 }: &NoiseWay<'_>,
+        NoiseQuery { path, bounds_m: [low_m, high_m], share, power_m2 }: &NoiseQuery<'_>,
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
-        between: Option<(OnTheWay, &mut ShortWaves)>,
+        between: Option<(BetweenQuery, &mut ShortWaves)>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { shares, parts_m, way_m, lap } = own;
@@ -193,7 +193,7 @@ impl Overlay {
         lap.begin_m =
             [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
         let n = height_m.len().min(MAX_BLOCK);
-        let short = between.map(|(OnTheWay { octave, quarters, from_m }, short)| {
+        let short = between.map(|(BetweenQuery { octave, quarters, from_m }, short)| {
             let weights = self.short_waves().from_octave(octave);
             let looks = if quarters { WAYS.len() } else { 1 };
             for (share, part_m) in WAYS.into_iter().zip(&mut short.between_m).take(looks) {
@@ -332,7 +332,7 @@ fn fills_m2(rms_m: f64) -> f64 {
     4.0 * rms_m * rms_m
 }
 
-/// Share of the noise's long waves that there is room for beside a source's own relief.
+/// Task of the noise's long waves that there is room for beside a source's own relief.
 fn room(power_m2: f64, rms_m: f64) -> f64 {
     let room = (1.0 - power_m2 / fills_m2(rms_m)).clamp(0.0, 1.0);
     room * room * (3.0 - 2.0 * room)
@@ -340,7 +340,7 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
 
 /// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and
 /// anew only where the place differs.
-fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]]) {
+fn gains_along(places: &[[TilePosition; 2]], gains: &mut [[[f64; 2]; 2]]) {
     let mut last = [(0.0, [1.0, 0.0]); 2];
     for (gains, places) in gains.iter_mut().zip(places) {
         for ((gain, (known, last)), place) in gains.iter_mut().zip(&mut last).zip(places) {

@@ -8,7 +8,7 @@
 //! it is the tool's own bending and its grip. What strikes the ground without that spring between
 //! is the tip in front of it, and the momentum of the tool behind arrives with the contact force.
 
-use crate::resource::stiffness::Ladder;
+use crate::resource::stiffness::StiffnessTable;
 use crate::resource::stroking::restitution;
 use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::{Choice, Integrator, MicroContact, Probe};
@@ -20,7 +20,7 @@ use asperity_dsp::simd::Level;
 pub(crate) struct PreparedProbe {
     pub(crate) micro_contact: MicroContact,
     /// Designs on contacts of any stiffness.
-    pub(crate) ladder: Ladder,
+    pub(crate) stiffness_table: StiffnessTable,
     pub(crate) mobility: Mobility,
     /// Momentum of a micro-collision per closing speed, kg: colliding mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
@@ -75,7 +75,7 @@ impl PreparedProbe {
         self.micro_contact.probe().ridge_m
     }
 
-    /// At the engine's inner rate; `own` is the engine's own probe.
+    /// SampleRange the engine's inner rate; `own` is the engine's own probe.
     pub(crate) fn new(
         probe: &Probe,
         own: &Probe,
@@ -87,7 +87,7 @@ impl PreparedProbe {
         let colliding_kg = colliding_kg(probe);
         Ok(Self {
             waits: micro_contact.latency_samples() < row_latency(integrator),
-            ladder: Ladder::new(&micro_contact)?,
+            stiffness_table: StiffnessTable::new(&micro_contact)?,
             micro_contact,
             mobility: Mobility::new(probe, sample_rate_hz)?,
             collision_mass_kg: colliding_kg * (1.0 + restitution(probe)),

@@ -6,7 +6,7 @@
 //! gains that were, fading in with those that come. So the bank hears no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::Owner;
+use crate::resource::bank::ContactKey;
 use asperity_dsp::modal_bank::{Input, LANES, LaneGains};
 use asperity_surface::height_field::MAX_BLOCK;
 
@@ -23,9 +23,9 @@ pub(crate) fn glide(sample_rate_hz: f64) -> f32 {
 
 /// A contact.
 pub(crate) struct Slider {
-    pub(crate) owner: Option<Owner>,
+    pub(crate) owner: Option<ContactKey>,
     place: StrikePlace,
-    /// At the beginning of the cell, at its end, and where they go.
+    /// SampleRange the beginning of the cell, at its end, and where they go.
     gains: [Box<[LaneGains]>; 3],
     arrived: bool,
     pub(crate) touched: bool,
@@ -52,7 +52,12 @@ impl Slider {
     }
 
     /// This contact is at this place; `fill` writes the gains there.
-    pub(crate) fn be_at(&mut self, owner: Owner, place: &StrikePlace, fill: impl FnOnce(&mut [LaneGains])) {
+    pub(crate) fn be_at(
+        &mut self,
+        owner: ContactKey,
+        place: &StrikePlace,
+        fill: impl FnOnce(&mut [LaneGains]),
+    ) {
         let known = self.owner == Some(owner);
         if known && self.place == *place {
             return;

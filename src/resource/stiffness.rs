@@ -68,45 +68,45 @@ pub(crate) fn within(force_n: f64) -> f64 {
 
 /// Designs of one probe on contacts of rising stiffness.
 #[derive(Debug, Clone)]
-pub(crate) struct Ladder {
-    rungs: Box<[MicroContact]>,
+pub(crate) struct StiffnessTable {
+    entries: Box<[MicroContact]>,
     /// Stiffness of the first rung.
     lowest_n_m: f64,
 }
 
-impl Ladder {
+impl StiffnessTable {
     /// Around the probe's own stiffness, as far as the integrator that runs there reaches.
     pub(crate) fn new(own: &MicroContact) -> Result<Self, DesignError> {
         let probe = *own.probe();
-        let rung = |step: i32| {
+        let entry = |step: i32| {
             let factor = libm::exp2(f64::from(step) / RUNGS_AN_OCTAVE as f64);
             let contact_stiffness_n_m = (probe.contact_stiffness_n_m * factor).clamp(1.0, 1e9);
             own.stiffened(contact_stiffness_n_m)
         };
         let (below, above) = ((OCTAVES.0 * RUNGS_AN_OCTAVE) as i32, (OCTAVES.1 * RUNGS_AN_OCTAVE) as i32);
         let steps = -below..=above;
-        let rungs: Vec<_> = steps.map(rung).collect::<Result<_, _>>()?;
-        let fits = |rung: &MicroContact| rung.is_a_rung_beside(own);
+        let entries: Vec<_> = steps.map(entry).collect::<Result<_, _>>()?;
+        let fits = |entry: &MicroContact| entry.is_a_rung_beside(own);
         // The rungs about the probe's own that run as it does.
         let middle = below as usize;
-        let first = middle - rungs[..middle].iter().rev().take_while(|rung| fits(rung)).count();
-        let last = middle + rungs[middle + 1..].iter().take_while(|rung| fits(rung)).count();
-        let rungs: Box<[_]> = rungs[first..=last].into();
-        let lowest_n_m = rungs[0].probe().contact_stiffness_n_m;
-        Ok(Self { rungs, lowest_n_m })
+        let first = middle - entries[..middle].iter().rev().take_while(|entry| fits(entry)).count();
+        let last = middle + entries[middle + 1..].iter().take_while(|entry| fits(entry)).count();
+        let entries: Box<[_]> = entries[first..=last].into();
+        let lowest_n_m = entries[0].probe().contact_stiffness_n_m;
+        Ok(Self { entries, lowest_n_m })
     }
 
     /// Makes `contact` the design of that stiffness, or of the nearest that the ladder has.
     pub(crate) fn set(&self, contact: &mut MicroContact, stiffness_n_m: f64) {
         let height = RUNGS_AN_OCTAVE as f64 * libm::log2(stiffness_n_m / self.lowest_n_m);
-        let height = height.clamp(0.0, (self.rungs.len() - 1) as f64);
-        let below = (height as usize).min(self.rungs.len().saturating_sub(2));
-        let (Some(softer), Some(harder)) = (self.rungs.get(below), self.rungs.get(below + 1)) else {
-            return contact.clone_from(&self.rungs[0]);
+        let height = height.clamp(0.0, (self.entries.len() - 1) as f64);
+        let below = (height as usize).min(self.entries.len().saturating_sub(2));
+        let (Some(softer), Some(harder)) = (self.entries.get(below), self.entries.get(below + 1)) else {
+            return contact.clone_from(&self.entries[0]);
         };
-        let [low, high] = [softer, harder].map(|rung| rung.probe().contact_stiffness_n_m);
+        let [low, high] = [softer, harder].map(|entry| entry.probe().contact_stiffness_n_m);
         let share = ((stiffness_n_m - low) / (high - low)).clamp(0.0, 1.0);
-        contact.become_between(softer, harder, if high > low { share } else { 0.0 });
+        contact.interpolate(softer, harder, if high > low { share } else { 0.0 });
     }
 }
 
@@ -135,14 +135,14 @@ mod tests {
     fn a_ladder_has_every_stiffness_between_its_ends() {
         let probe = Probe::default();
         let own = MicroContact::new(&probe, Integrator::ExactEvent, 44_100.0).unwrap();
-        let ladder = Ladder::new(&own).unwrap();
+        let stiffness_table = StiffnessTable::new(&own).unwrap();
         let mut contact = own;
         for factor in [0.05, 0.5, 0.99, 1.0, 3.3, 7.0] {
             let wanted = factor * probe.contact_stiffness_n_m;
-            ladder.set(&mut contact, wanted);
+            stiffness_table.set(&mut contact, wanted);
             assert!((contact.probe().contact_stiffness_n_m / wanted - 1.0).abs() < 1e-12);
         }
-        ladder.set(&mut contact, probe.contact_stiffness_n_m);
+        stiffness_table.set(&mut contact, probe.contact_stiffness_n_m);
         let rest = contact.at_rest(0.0, 0.5);
         assert!(contact.is_settled(&rest, 0.0, 0.5));
     }

@@ -20,6 +20,7 @@ mod sampling;
 
 pub use extent::{Extent, MapError};
 
+use crate::dilated::dilated;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Power, PowerKind, Properties, Setup, SurfaceBlock,
     WavelengthBand, bounds,
@@ -27,7 +28,6 @@ use crate::height_field::{
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
-use crate::ridden::ridden;
 use crate::spline::{Spline, Working};
 use crate::wrap::Wrap;
 use asperity_dsp::DesignError;
@@ -171,7 +171,7 @@ impl HeightMap {
     }
 
     /// Map that the tip rides on which rides now.
-    fn ridden(&self) -> &Pyramid {
+    fn dilated(&self) -> &Pyramid {
         self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map)
     }
 
@@ -339,7 +339,7 @@ impl HeightMap {
         let known = self.tips.iter().any(|(known_m, _)| *known_m == radius_m);
         let Some(finest) = self.heights.levels.first().filter(|_| radius_m > 0.0 && !known) else { return };
         let texels_per_metre = finest.texels_per_metre();
-        let map = ridden(finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
+        let map = dilated(finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
         self.tips.push((radius_m, Pyramid::new(&map, |m| m, self.extent, self.wrap)));
     }
 

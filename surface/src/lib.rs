@@ -31,10 +31,10 @@ pub mod triplanar;
 
 // Maps in and out.
 pub mod deband;
+pub mod dilated;
 #[cfg(feature = "image")]
 pub mod image_io;
 pub mod picture;
 mod resample;
-pub mod ridden;
 mod spline;
 pub mod wrap;

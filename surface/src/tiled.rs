@@ -17,7 +17,7 @@ use crate::height_field::{
 
 /// A place in a tile, and how much of it is already the next tile's beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Place {
+pub struct TilePosition {
     /// Within the tile along one axis, m.
     pub at_m: f64,
     /// Share of the relief one tile back, 0 to 1.
@@ -46,12 +46,12 @@ impl TileAxis {
         Self { length_m, blend_m: longest_m.min(0.25 * length_m) }
     }
 
-    /// Place in its tile of a place on the unwrapped surface.
+    /// TilePosition in its tile of a place on the unwrapped surface.
     #[inline]
     #[must_use]
-    pub fn place(&self, position_m: f64) -> Place {
+    pub fn place(&self, position_m: f64) -> TilePosition {
         if !self.length_m.is_finite() {
-            return Place { at_m: position_m, ..Place::default() };
+            return TilePosition { at_m: position_m, ..TilePosition::default() };
         }
         self.inside(position_m - self.length_m * floor(position_m / self.length_m))
     }
@@ -60,9 +60,9 @@ impl TileAxis {
     /// tile that the one before lay in.
     #[inline]
     #[must_use]
-    pub fn place_after(&self, position_m: f64, turn: &mut f64) -> Place {
+    pub fn place_after(&self, position_m: f64, turn: &mut f64) -> TilePosition {
         if !self.length_m.is_finite() {
-            return Place { at_m: position_m, ..Place::default() };
+            return TilePosition { at_m: position_m, ..TilePosition::default() };
         }
         let at_m = position_m - self.length_m * *turn;
         // Well inside a tile no rounding makes it another one.
@@ -75,7 +75,7 @@ impl TileAxis {
     }
 
     /// Beginning of the tile that all places from `low_m` to `high_m` lie in, well inside and
-    /// before its blend: each is then [at](Place::at_m) its distance from there, to the bit. None
+    /// before its blend: each is then [at](TilePosition::at_m) its distance from there, to the bit. None
     /// where they may lie otherwise.
     #[must_use]
     pub fn begin_of_all_m(&self, low_m: f64, high_m: f64) -> Option<f64> {
@@ -91,14 +91,14 @@ impl TileAxis {
     }
 
     #[inline]
-    fn inside(&self, at_m: f64) -> Place {
+    fn inside(&self, at_m: f64) -> TilePosition {
         if at_m <= self.length_m - self.blend_m {
-            return Place { at_m, ..Place::default() };
+            return TilePosition { at_m, ..TilePosition::default() };
         }
         let t = ((at_m - (self.length_m - self.blend_m)) / self.blend_m).clamp(0.0, 1.0);
         let weight = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         let slope_per_m = 30.0 * t * t * (1.0 - t) * (1.0 - t) / self.blend_m;
-        Place { at_m, weight, slope_per_m }
+        TilePosition { at_m, weight, slope_per_m }
     }
 }
 
@@ -139,12 +139,12 @@ impl Tiled {
         Self { source: [source], axes, part: SurfaceBlock::default() }
     }
 
-    fn places(&self, position_m: [f64; 2]) -> [Place; 2] {
+    fn places(&self, position_m: [f64; 2]) -> [TilePosition; 2] {
         [self.axes[0].place(position_m[0]), self.axes[1].place(position_m[1])]
     }
 
-    /// Place where a copy of the tile is read.
-    fn back(&self, places: &[Place; 2], copy: [usize; 2]) -> [f64; 2] {
+    /// TilePosition where a copy of the tile is read.
+    fn back(&self, places: &[TilePosition; 2], copy: [usize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| places[axis].at_m - if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 })
     }
 }
@@ -153,9 +153,9 @@ impl Tiled {
 const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 /// Share of one copy, and its slope.
-fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
+fn share(places: &[TilePosition; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
     let [u, v] = [0, 1].map(|axis| {
-        let Place { weight, slope_per_m, .. } = places[axis];
+        let TilePosition { weight, slope_per_m, .. } = places[axis];
         if copy[axis] == 1 { (weight, slope_per_m) } else { (1.0 - weight, -slope_per_m) }
     });
     (u.0 * v.0, [u.1 * v.0, u.0 * v.1])
@@ -189,7 +189,7 @@ impl HeightField for Tiled {
             // Places of a body need no tiles.
             return self.source[0].sample(path, out);
         }
-        let mut places = [[Place::default(); 2]; MAX_BLOCK];
+        let mut places = [[TilePosition::default(); 2]; MAX_BLOCK];
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
         for i in 0..n {
             places[i] = self.places(path.position_m[i]);
@@ -289,7 +289,7 @@ mod tests {
             });
             for x in way.chain(edges).chain([f64::NAN, 1e300, 0.07, -0.0, f64::INFINITY, 0.01]) {
                 let (after, alone) = (axis.place_after(x, &mut turn), axis.place(x));
-                let bits = |p: Place| [p.at_m, p.weight, p.slope_per_m].map(f64::to_bits);
+                let bits = |p: TilePosition| [p.at_m, p.weight, p.slope_per_m].map(f64::to_bits);
                 assert!(
                     bits(after) == bits(alone) || x.is_nan() || x.is_infinite(),
                     "{x}: {after:?} {alone:?}"
@@ -300,7 +300,11 @@ mod tests {
                     if let Some(begin) = axis.begin_of_all_m(low, high) {
                         for x in [low, 0.5 * (low + high), high] {
                             let at_m = x - begin;
-                            assert_eq!(bits(axis.place(x)), bits(Place { at_m, ..Place::default() }), "{x}");
+                            assert_eq!(
+                                bits(axis.place(x)),
+                                bits(TilePosition { at_m, ..TilePosition::default() }),
+                                "{x}"
+                            );
                         }
                     }
                 }

@@ -98,7 +98,7 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     file.seed = wanted.overrides.seed.or(file.seed);
     let (text, name) = log_text(wanted, &file)?;
     let (log, unread) = ContactLog::parse_telling(&text, &name).map_err(refused)?;
-    let at = |error: LogError| refused(FileError::told(error).within(&name));
+    let at = |error: LogError| refused(FileError::from_error(error).within(&name));
     let in_text = |error: LogError| refused(error.in_text(&text, &name));
     log.check_actuators(file.actuators.len()).map_err(in_text)?;
     let engine = Engine::from_scene(&file, &wanted.overrides).map_err(told)?;

@@ -372,9 +372,9 @@ def snippets():
     """The blocks of Python in the data sets' page."""
     source = os.environ.get("ASPERITY_PYTHON_SOURCE")
     root = pathlib.Path(source) if source else pathlib.Path(__file__).resolve().parents[1]
-    page = (root.parents[1] / "docs" / "formats.md").read_text()
+    page = (root.parents[1] / "docs" / "formats" / "data-sets.md").read_text()
     block = re.search(r"```python\n(import pyarrow.*?)```", page, re.DOTALL)
-    assert block, "docs/formats.md has no block that begins with pyarrow"
+    assert block, "docs/formats/data-sets.md has no block that begins with pyarrow"
     return re.split(r"\n\n(?=import )", block[1])
 
 

@@ -151,7 +151,7 @@ export class Engine {
       if (key in NUMBERS) row[NUMBERS[key]] = value;
       else if (key in VECTORS) for (let i = 0; i < value.length; i++) row[VECTORS[key] + i] = value[i];
       else if (key in THINGS) row[THINGS[key][0]] = this.number(key, value);
-      else throw new Error(`${key}: is no key of an event; must be one of docs/formats.md`);
+      else throw new Error(`${key}: is no key of an event; must be one of docs/formats/log.md`);
     }
     this.check(this.wasm.asp_report());
   }

@@ -81,7 +81,7 @@ pub fn read(path: &Path, missing: &Missing) -> Result<Imported, CliError> {
         CliError::file(path, format!("is no JSON ({error})"), "name a table in JSON or CSV")
     })?;
     if json.get("format").and_then(Value::as_str) == Some("asperity.modes") {
-        let model = ModalModel::parse(text).map_err(|error| in_file(CliError::told(error)))?;
+        let model = ModalModel::parse(text).map_err(|error| in_file(CliError::from_error(error)))?;
         return Ok(Imported {
             modes: model.modes,
             positions: model.positions,
@@ -106,7 +106,7 @@ fn of_columns(columns: Vec<columns::Column>) -> Result<Imported, CliError> {
         columns.push(("amplitude".to_owned(), vec![1.0; rows]));
         warnings.push("the table has no amplitudes: all modes have 1".to_owned());
     }
-    let modes = table::from_columns(&columns).map_err(CliError::told)?;
+    let modes = table::from_columns(&columns).map_err(CliError::from_error)?;
     Ok(Imported { modes, positions: Vec::new(), impulse_n_s: None, warnings })
 }
 
@@ -178,7 +178,7 @@ fn body(entry: &Map<String, Value>, missing: &Missing) -> Result<Imported, CliEr
         columns.push(("amplitude".to_owned(), first));
     }
     let warnings = without_placeholders(&mut columns, &mut positions);
-    let modes = table::from_columns(&columns).map_err(CliError::told)?;
+    let modes = table::from_columns(&columns).map_err(CliError::from_error)?;
     positions.truncate(MAX_POSITIONS - 1);
     if let Some(odd) = positions.iter().find(|amplitudes| amplitudes.len() != modes.len()) {
         let what = format!("{} gains for {} modes", odd.len(), modes.len());

@@ -280,7 +280,7 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
     }
     // What the engine would refuse is no body.
     let model = asperity::ModalModel::new(table.modes.clone(), impulse_n_s);
-    model.and_then(|model| model.with_positions(table.positions.clone())).map_err(CliError::told)?;
+    model.and_then(|model| model.with_positions(table.positions.clone())).map_err(CliError::from_error)?;
     outputs.commit()?;
     Ok(TableReport::new(&table.modes, table.positions.len(), table.warnings))
 }
@@ -332,7 +332,7 @@ fn channel(text: &str) -> Result<ChannelChoice, CliError> {
 }
 
 fn fitted(path: &Path, channel: ChannelChoice, options: &Options) -> Result<(Recording, Fit), CliError> {
-    let recording = asperity_fit::load(path, channel).map_err(CliError::told)?;
+    let recording = asperity_fit::load(path, channel).map_err(CliError::from_error)?;
     let mut progress = Progress::new("fitting", STEPS);
     let mut shown = 0;
     let fit = asperity_fit::fit(&recording, &options.fit_options(), &mut |done| {
@@ -340,7 +340,7 @@ fn fitted(path: &Path, channel: ChannelChoice, options: &Options) -> Result<(Rec
         progress.advance(step.saturating_sub(shown));
         shown = shown.max(step);
     })
-    .map_err(CliError::told)?;
+    .map_err(CliError::from_error)?;
     Ok((recording, fit))
 }
 
@@ -361,7 +361,7 @@ fn material(options: &Options) -> Result<Option<DampingLaw>, CliError> {
         ));
     }
     let path = Path::new(text);
-    let model = asperity::ModalModel::load(path).map_err(CliError::told)?;
+    let model = asperity::ModalModel::load(path).map_err(CliError::from_error)?;
     DampingLaw::of(&model.modes).map(Some).ok_or_else(|| {
         CliError::file(path, "has no damped mode to learn a law from", "name a modes file with damped modes")
     })

@@ -52,7 +52,7 @@ impl PlacesReport {
     /// # Errors
     /// When the file is none or has no shapes, or too few of its modes are in the recordings.
     pub fn new(path: &Path, merged: &Merged, recordings: &[&Path]) -> Result<Self, CliError> {
-        let model = ModalModel::load(path).map_err(CliError::told)?;
+        let model = ModalModel::load(path).map_err(CliError::from_error)?;
         let Some(body) = &model.shapes else {
             let right = "must be of version 2 with shapes, as `asperity modes` writes it";
             return Err(CliError::file(path, "has no mode shapes", right));

@@ -34,7 +34,7 @@ pub enum Input {
 pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliError> {
     let name = name_of(path);
     let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
-    let told = |error: asperity_ports::PortError| CliError::told(error.within(path.display()));
+    let told = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
     match ending.as_str() {
         "wav" | "aif" | "aiff" | "flac" | "ogg" | "oga" | "mp3" | "m4a" => sound(path, channel),
         "toml" => scene(path, channel),
@@ -72,7 +72,8 @@ fn text(path: &Path) -> Result<String, CliError> {
 
 /// A clip, and its strokes where they lie in a file of their own beside it.
 fn clip_of_ahap(path: &Path) -> Result<Input, CliError> {
-    let at = |path: &Path, error: asperity_ports::PortError| CliError::told(error.within(path.display()));
+    let at =
+        |path: &Path, error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
     let beside = transients_of(path);
     let main = text(path)?;
     if !beside.exists() {
@@ -94,7 +95,7 @@ fn sound(path: &Path, channel: usize) -> Result<Input, CliError> {
             format!("{wanted} is not in {name}"),
             format!("must be below {}", last + 1),
         ),
-        other => CliError::told(other),
+        other => CliError::from_error(other),
     })?;
     let name = name_of(path);
     let cut = format!("{name} ends before its header says: what is there was read");
@@ -123,7 +124,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
     let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
     let Engine { scene, renderer, names, .. } = built;
     let render = offline::render(scene, renderer, &log, &names, &settings)
-        .map_err(|error| CliError::told(error).within(path.display()))?;
+        .map_err(|error| CliError::from_error(error).within(path.display()))?;
     let samples = render.haptic[channel].iter().map(|x| f64::from(*x)).collect();
     Ok(Input::Samples {
         samples,

@@ -175,7 +175,7 @@ fn device(name: &str) -> Result<Device, CliError> {
         let right = format!("must be one of {}, or a profile's file", Device::NAMES.join(", "));
         CliError::new("--device", format!("{name} cannot be read ({error})"), right)
     })?;
-    Device::parse(&text).map_err(|error| CliError::told(error.within(name)))
+    Device::parse(&text).map_err(|error| CliError::from_error(error.within(name)))
 }
 
 fn made(
@@ -209,8 +209,8 @@ fn made(
         }
         Input::Samples { samples, rate_hz, strokes_s, told, source } => {
             if port.is_waveform() {
-                let mut made =
-                    whole(samples, rate_hz, told, options).map_err(|e| CliError::told(e.within(&source)))?;
+                let mut made = whole(samples, rate_hz, told, options)
+                    .map_err(|e| CliError::from_error(e.within(&source)))?;
                 port.write_samples(&mut made, felt::RATE_HZ, path, device, options, outputs)?;
                 return Ok(made);
             }
@@ -274,7 +274,7 @@ fn reduced(
         progress.advance(step.saturating_sub(shown));
         shown = shown.max(step);
     })
-    .map_err(|error| CliError::told(error.within(source)))?;
+    .map_err(|error| CliError::from_error(error.within(source)))?;
     drop(progress);
     let mut warnings = told;
     let peak = reduction.clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);

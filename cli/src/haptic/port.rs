@@ -56,7 +56,7 @@ impl Port {
         options: &PortOptions,
         outputs: &mut Outputs,
     ) -> Result<(), CliError> {
-        let told = |error: asperity_ports::PortError| CliError::told(error.within(path.display()));
+        let told = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
         match self {
             Self::Haptic => outputs.write(path, haptic_file::write(clip).map_err(told)?.as_bytes()),
             Self::Android => outputs.write(path, android::write(clip, device).map_err(told)?.as_bytes()),
@@ -86,7 +86,7 @@ impl Port {
         if self == Self::Hjif {
             let points = options.points.unwrap_or(HJIF_POINTS_PER_S);
             let written = hjif::write(&bounded, points, HJIF_SNR_DB, "vibration")
-                .map_err(|error| CliError::told(error.within(path.display())))?;
+                .map_err(|error| CliError::from_error(error.within(path.display())))?;
             made.points = written.keyframes;
             made.left = written.samples;
             return outputs.write(path, written.text.as_bytes());

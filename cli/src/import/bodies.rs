@@ -71,7 +71,7 @@ pub fn modes(document: &Document, model: &Value, at: &str, gain: f64) -> Result<
     }
     let text = file.to_string();
     // What the engine would refuse is no body.
-    asperity::ModalModel::parse(&text).map_err(|error| CliError::told(error).within(at))?;
+    asperity::ModalModel::parse(&text).map_err(|error| CliError::from_error(error).within(at))?;
     Ok(text)
 }
 

@@ -24,7 +24,7 @@ const MOST_RELIEF_M: f64 = 0.1;
 
 impl From<ShapeError> for CliError {
     fn from(error: ShapeError) -> Self {
-        Self::told(error)
+        Self::from_error(error)
     }
 }
 

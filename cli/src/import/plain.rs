@@ -112,8 +112,8 @@ impl Scene {
                 return Ok(false);
             }
         };
-        let file = ModesFile::new(&mut body, &preset.damping(), false, path).map_err(CliError::told)?;
-        let text = serde_json::to_string(&file).map_err(CliError::told)?;
+        let file = ModesFile::new(&mut body, &preset.damping(), false, path).map_err(CliError::from_error)?;
+        let text = serde_json::to_string(&file).map_err(CliError::from_error)?;
         let written = format!("{name}.modes.json");
         let table = format!(
             "[[body]]\nname = {}\nmodes = {}\nmaterial = {}\n",

@@ -66,7 +66,8 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     output::refuse_input(&beside)?;
     let wanted = options.wanted()?;
     let (material, damping) = options.material()?;
-    let mesh = asperity_shape::load_part(&options.body, options.part.as_deref()).map_err(CliError::told)?;
+    let mesh =
+        asperity_shape::load_part(&options.body, options.part.as_deref()).map_err(CliError::from_error)?;
     let making = Making {
         material,
         size_m: options.size,
@@ -76,15 +77,15 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     };
     let name = options.body.display().to_string();
     let mut body = asperity_shape::make(mesh, &making, progress).map_err(|error| {
-        CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) })
+        CliError::from_error(if error.at.starts_with("--") { error } else { error.within(&name) })
     })?;
-    let mut file =
-        ModesFile::new(&mut body, &damping, options.radiation, &options.body).map_err(CliError::told)?;
+    let mut file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)
+        .map_err(CliError::from_error)?;
     let mut outputs = Outputs::new();
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
     // What the engine would refuse is no body.
-    asperity::ModalModel::parse(&text).map_err(CliError::told)?;
+    asperity::ModalModel::parse(&text).map_err(CliError::from_error)?;
     let name = beside.file_name().map(|name| name.to_string_lossy().into_owned());
     let written = if let (true, Some(name)) = (options.shapes_beside || options.shapes_glb, name) {
         if let Some(bytes) = file.put_shapes_beside(name) {

@@ -164,7 +164,7 @@ impl Options {
             .density_kg_m3
             .or(preset.map(|m| m.density_kg_m3))
             .ok_or_else(|| missing("--density-kg-m3"))?;
-        let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::told)?;
+        let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::from_error)?;
         Ok((elastic, self.damping(preset)?))
     }
 
@@ -172,7 +172,7 @@ impl Options {
         let Some(path) = &self.damping_from else {
             return Ok(preset.unwrap_or(Material::PLA).damping());
         };
-        let recorded = asperity::ModalModel::load(path).map_err(CliError::told)?;
+        let recorded = asperity::ModalModel::load(path).map_err(CliError::from_error)?;
         asperity_shape::damping_fit::fit(&recorded.modes).ok_or_else(|| {
             CliError::file(path, "has no damped mode to learn from", "name the modes file of a recording")
         })

@@ -61,7 +61,7 @@ struct Summary {
 /// When the host is not in this build; a machine without devices is not an error.
 pub fn list(options: &Options) -> Result<(), CliError> {
     let devices = match &options.host {
-        Some(host) => device::list_on(host).map_err(CliError::told)?,
+        Some(host) => device::list_on(host).map_err(CliError::from_error)?,
         None => device::list(),
     };
     if devices.is_empty() {
@@ -98,7 +98,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let named = options.host.is_some() || options.device.is_some() || options.haptic_device.is_some();
     let rate = match device::sample_rate_hz(&device_options) {
         Ok(rate) => Some(rate),
-        Err(error) if named => return Err(CliError::told(error)),
+        Err(error) if named => return Err(CliError::from_error(error)),
         Err(_) => None,
     };
     let overrides = Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() };
@@ -118,7 +118,8 @@ fn scene_and_channels(options: &Options) -> Result<(std::path::PathBuf, Option<C
     }
     let scene = scene.ok_or_else(|| CliError::new("SCENE.toml", "is missing", "name a scene file"))?;
     let text = parts.join(" ");
-    let map = (!parts.is_empty()).then(|| ChannelMap::parse(&text)).transpose().map_err(CliError::told)?;
+    let map =
+        (!parts.is_empty()).then(|| ChannelMap::parse(&text)).transpose().map_err(CliError::from_error)?;
     Ok((scene, map))
 }
 
@@ -138,11 +139,11 @@ fn play(
         .iter()
         .map(|line| Ok((line.t, line.event.resolve(&names)?)))
         .collect::<Result<Vec<_>, LogError>>()
-        .map_err(|error| CliError::told(error).within(log_name(file)))?;
+        .map_err(|error| CliError::from_error(error).within(log_name(file)))?;
     let mut feed = Feed { events: &events, next: 0, rate_hz };
     feed.send(&mut scene);
     let interrupted = watch_for_interrupt();
-    let player = device::play_on(renderer, options).map_err(CliError::told)?;
+    let player = device::play_on(renderer, options).map_err(CliError::from_error)?;
     if let Some(why) = player.silent_because() {
         eprintln!("warning: playing silently: {why}");
     }

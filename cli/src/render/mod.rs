@@ -281,7 +281,7 @@ pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<S
     let (rate_hz, kernel) = (renderer.sample_rate_hz(), renderer.kernel());
     check_length(&file, log.end_s() + file.tail_s, rate_hz)?;
     let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
-    let render = offline::render(scene, renderer, log, &names, &settings).map_err(CliError::told)?;
+    let render = offline::render(scene, renderer, log, &names, &settings).map_err(CliError::from_error)?;
     check_finite(&render)?;
     let report = report(&render, kernel, levels, Duration::ZERO);
     let full_scale = report.full_scale.clone();
@@ -349,7 +349,7 @@ fn play(
     let Engine { scene, renderer, names, .. } = built;
     let at = |error| {
         let path = file.contacts.as_deref().unwrap_or(&file.path);
-        CliError::told(error).within(path.display())
+        CliError::from_error(error).within(path.display())
     };
     let render =
         offline::render_tapped(scene, renderer, log, &names, &settings, &mut recorder).map_err(at)?;

@@ -8,9 +8,9 @@ mod ground;
 mod outputs;
 mod zoom;
 
-use crate::plot::{Axis, Figure, Layer, Panel, Series, palette};
 use asperity::Wrap;
-use asperity_texture::raster::Raster;
+use asperity_plot::{Axis, Figure, Layer, Panel, Series, palette};
+use asperity_surface::raster::Raster;
 use ground::ground_panel;
 use outputs::{audio_rows, haptic_rows};
 use zoom::zoom_panels;

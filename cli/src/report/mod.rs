@@ -186,7 +186,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     drop(progress);
     let (cpu, sample_rate_hz) = (cpu_name(), SAMPLE_RATE_HZ);
     let report = Report { cpu, sample_rate_hz, rows, end_to_end, from_reports, load, stability };
-    let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
+    let json = serde_json::to_string_pretty(&report).map_err(CliError::from_error)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
     outputs.write(&path("speed_vs_error.json"), json.as_bytes())?;
@@ -221,5 +221,5 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 
 /// A kernel that refuses its own defaults is a defect.
 fn refused(error: impl std::fmt::Display) -> CliError {
-    CliError::told(error).within("report")
+    CliError::from_error(error).within("report")
 }

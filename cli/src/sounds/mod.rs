@@ -243,7 +243,7 @@ fn rendered(scene: &Table, sound: &Sound, folder: &Folder) -> Result<(Render, Ve
 }
 
 fn text_of(scene: &Table) -> Result<String, CliError> {
-    toml::to_string(scene).map_err(|error| CliError::told(error).within("scene"))
+    toml::to_string(scene).map_err(|error| CliError::from_error(error).within("scene"))
 }
 
 fn write(

@@ -103,7 +103,7 @@ impl Ground {
 
     fn of_map(options: &Options) -> Result<(Self, Vec<String>), CliError> {
         let what = &options.what;
-        let map = load_channel(what, Channel::Luma).map_err(CliError::told)?.raster;
+        let map = load_channel(what, Channel::Luma).map_err(CliError::from_error)?.raster;
         let mut assumed = Vec::new();
         let width_m = options.width_m.unwrap_or_else(|| {
             let width_m = TEXEL_M * map.width as f64;
@@ -149,7 +149,7 @@ impl Ground {
         }
         let file = SceneFile::load(path)?;
         let text = fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
-        let scene: Table = text.parse().map_err(CliError::told)?;
+        let scene: Table = text.parse().map_err(CliError::from_error)?;
         let home = file.path.parent().unwrap_or(Path::new("")).to_owned();
         let mut ground = Self::of_table(options, with_absolute_paths(&scene, &home), &home, name)?;
         ground.inputs.push(path.to_owned());
@@ -158,7 +158,7 @@ impl Ground {
     }
 
     fn of_table(options: &Options, scene: Table, home: &Path, name: String) -> Result<Self, CliError> {
-        let text = toml::to_string(&scene).map_err(CliError::told)?;
+        let text = toml::to_string(&scene).map_err(CliError::from_error)?;
         let file = SceneFile::parse(&text, &home.join("scene.toml"))?;
         let named = |name: &String| file.surfaces.iter().find(|surface| surface.name == *name);
         let surface = match &options.surface {
@@ -262,7 +262,8 @@ fn is_photograph(path: &Path) -> Result<bool, CliError> {
     if has_end(path, &["jpg", "jpeg"]) {
         return Ok(true);
     }
-    let of = |channel| Ok::<_, CliError>(load_channel(path, channel).map_err(CliError::told)?.raster.values);
+    let of =
+        |channel| Ok::<_, CliError>(load_channel(path, channel).map_err(CliError::from_error)?.raster.values);
     let (red, blue) = (of(Channel::R)?, of(Channel::B)?);
     let apart: f64 = red.iter().zip(&blue).map(|(red, blue)| (red - blue).abs()).sum();
     Ok(apart > COLOURED * red.len() as f64)

@@ -89,7 +89,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 
 fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError> {
     if let Way::Log(path) = &options.path {
-        let log = ContactLog::load(path).map_err(CliError::told)?;
+        let log = ContactLog::load(path).map_err(CliError::from_error)?;
         let name = format!("{}-{}", ground.name, sounds::stem(path));
         let sound = |probe: Option<&String>| -> Result<Sound, CliError> {
             let (scene, _) = ground.with_probe(probe.map(String::as_str))?;

@@ -132,7 +132,7 @@ const STEPS: u64 = 4;
 fn analyze(arguments: &AnalyzeArgs) -> Result<Analysis, CliError> {
     let path = arguments.image.as_path();
     let mut progress = Progress::new("analyze", STEPS);
-    let picture = load_channel(path, Channel::Luma).map_err(CliError::told)?.raster;
+    let picture = load_channel(path, Channel::Luma).map_err(CliError::from_error)?.raster;
     progress.advance(1);
     let mut report = fractal_dimension(&picture)
         .map_err(|error| CliError::file(path, error, "give a picture of at least 64 × 64 with relief"))?;
@@ -186,7 +186,7 @@ fn write_primitive(
     };
     let (low, high) = primitive.range();
     let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
-    save_gray16(file, &primitive.map(|v| (v - low) * scale)).map_err(CliError::told)
+    save_gray16(file, &primitive.map(|v| (v - low) * scale)).map_err(CliError::from_error)
 }
 
 /// Group and figures of a pattern.
@@ -206,7 +206,7 @@ fn describe(picture: &Raster, lattice: &Lattice) -> (&'static str, Pattern) {
 
 /// Share of a picture that is colour rather than light.
 fn colour(path: &Path) -> Result<f64, CliError> {
-    let channel = |which| load_channel(path, which).map(|image| image.raster).map_err(CliError::told);
+    let channel = |which| load_channel(path, which).map(|image| image.raster).map_err(CliError::from_error);
     Ok(colour_fraction(&channel(Channel::R)?, &channel(Channel::G)?, &channel(Channel::B)?))
 }
 

@@ -63,7 +63,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         periodic: !(options.open || options.midpoint),
         rms_m: options.rms_m,
     };
-    let heights_m = design.surface().map_err(CliError::told)?;
+    let heights_m = design.surface().map_err(CliError::from_error)?;
     let metres_per_px = options.width_m / heights_m.width as f64;
     let preview = write_heights(&options.output, &heights_m, metres_per_px)?;
     say_preview(&preview, options.json, options.width_m)

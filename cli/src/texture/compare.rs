@@ -98,7 +98,7 @@ fn table(options: &Options, maps: &[Raster], set: u64, progress: &mut Progress) 
     let comparison = Comparison { strokes, width_m, relief_m, seed };
     comparison
         .table(maps, set, || progress.advance(1))
-        .map_err(|(place, error)| CliError::told(error).within(options.maps[place].display()))
+        .map_err(|(place, error)| CliError::from_error(error).within(options.maps[place].display()))
 }
 
 fn in_words(report: &Report) -> String {

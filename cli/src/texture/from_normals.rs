@@ -168,7 +168,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let relief_per_px = high - low;
     let scaled = found.height_px.map(|z| if relief_per_px > 0.0 { (z - low) / relief_per_px } else { 0.5 });
     let mut outputs = Outputs::new();
-    outputs.write_at(&options.output, |path| image_io::save_gray16(path, &scaled).map_err(CliError::told))?;
+    outputs.write_at(&options.output, |path| {
+        image_io::save_gray16(path, &scaled).map_err(CliError::from_error)
+    })?;
     let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
     let told_texel_m = width_m.map(|width_m| width_m / scaled.width as f64);
     let texel_m = told_texel_m.or(options.object.stl.as_ref().map(|_| TEXEL_M));

@@ -207,7 +207,7 @@ pub fn make(options: &Options) -> Result<Report, CliError> {
 }
 
 fn load(path: &Path) -> Result<Photograph, CliError> {
-    load_reduced_photograph(path, MOST_TEXELS).map_err(CliError::told)
+    load_reduced_photograph(path, MOST_TEXELS).map_err(CliError::from_error)
 }
 
 fn write(
@@ -222,8 +222,9 @@ fn write(
     let mut files = Vec::new();
     let mut picture_file = |outputs: &mut Outputs, name: &str, raster: &Raster| {
         files.push(name.to_owned());
-        outputs
-            .write_at(&folder.join(name), |path| image_io::save_gray16(path, raster).map_err(CliError::told))
+        outputs.write_at(&folder.join(name), |path| {
+            image_io::save_gray16(path, raster).map_err(CliError::from_error)
+        })
     };
     picture_file(&mut outputs, "displacement.png", &surface.displacement)?;
     picture_file(&mut outputs, "roughness.png", &surface.roughness)?;

@@ -167,7 +167,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let seconds = start.elapsed().as_secs_f64();
     let mut outputs = Outputs::new();
     let grey = file.grey(&made.image);
-    outputs.write_at(&options.output, |path| image_io::save_gray16(path, &grey).map_err(CliError::told))?;
+    outputs
+        .write_at(&options.output, |path| image_io::save_gray16(path, &grey).map_err(CliError::from_error))?;
     let texel_m = texel_m(options, original.width);
     let heights_m = made.image.map(|height| 1e-3 * options.relief_mm * height);
     options.object.write(&mut outputs, &heights_m, texel_m)?;

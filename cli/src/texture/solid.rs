@@ -49,7 +49,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         )
     })?;
     let parameters = material.parameters();
-    let noise = SolidNoise::new(parameters, options.seed).map_err(CliError::told)?;
+    let noise = SolidNoise::new(parameters, options.seed).map_err(CliError::from_error)?;
     let size = options.size as usize;
     let metres_per_px = options.width_m / size as f64;
     let heights_m = Raster::from_fn(size, size, |x, y| {

@@ -22,7 +22,7 @@
 
 use super::flow::Regime;
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
-use super::quad::Quad;
+use super::quad::F64x4;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
 /// Coefficients of the scheme.
@@ -56,7 +56,7 @@ impl EnergyConserving {
 
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
-    pub fn run<Q: Quad>(
+    pub fn run<Q: F64x4>(
         &self,
         quad: Q,
         design: &MicroContact,

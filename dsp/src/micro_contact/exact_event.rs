@@ -12,13 +12,13 @@
 //! a sample costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
-//! latency, and what is known to bend beside it ([`GroundBetween`]); the force is the mean of both
+//! latency, and what is known to bend beside it ([`SubSampleProfile`]); the force is the mean of both
 //! ends.
 
-use super::bends::{Bend, GroundBetween};
 use super::flow::{MAX_LEVEL, Regime};
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
-use super::quad::{Apart, Quad};
+use super::quad::{F64x4, Unfused};
+use super::quartic_correction::{QuarticCorrection, SubSampleProfile};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 use crate::simd::{Level, at_level};
 use fearless_simd::{SimdBase, f64x4};
@@ -28,7 +28,7 @@ const TICK_PHASE: f64 = 0.07;
 /// Longest pressed map, radians: a longer one could leave and come back unseen.
 const PRESSED_PHASE: f64 = 1.0;
 
-/// Kinds of [`GroundBetween`], for what is compiled for each. Ground that bends can meet a pad and
+/// Kinds of [`SubSampleProfile`], for what is compiled for each. Ground that bends can meet a pad and
 /// leave it within a sample: it is looked at wherever it is known, in pieces of 2⁻¹ of a sample or
 /// of 2⁻².
 pub(super) const AT_SAMPLES: u8 = 0;
@@ -99,9 +99,9 @@ impl ExactEvent {
     }
 
     /// The scheme between two that differ in the contact's stiffness.
-    pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64, rest_m_n: [f64; 2]) {
+    pub fn interpolate(&mut self, softer: &Self, harder: &Self, share: f64, rest_m_n: [f64; 2]) {
         self.regimes[0] = softer.regimes[0];
-        self.regimes[1].become_between(&softer.regimes[1], &harder.regimes[1], share, rest_m_n);
+        self.regimes[1].interpolate(&softer.regimes[1], &harder.regimes[1], share, rest_m_n);
         (self.coarsest, self.finest) = (harder.coarsest, harder.finest);
         (self.step_s, self.mass_rate) = (softer.step_s, softer.mass_rate);
         self.stiffness_per_mass =
@@ -111,18 +111,20 @@ impl ExactEvent {
     /// Runs one clean block; row n describes input n − 1, and so does what is known of the ground:
     /// it ends at that input.
     #[inline(always)]
-    pub fn run<Q: Quad>(
+    pub fn run<Q: F64x4>(
         &self,
         quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
-        (block, ground): (&CleanBlock, GroundBetween<'_>),
+        (block, ground): (&CleanBlock, SubSampleProfile<'_>),
         out: &mut [ContactSample],
     ) {
         match ground {
-            GroundBetween::AtSamples => self.run_on::<Q, AT_SAMPLES>(quad, design, state, block, &[], out),
-            GroundBetween::Midway(bends) => self.run_on::<Q, MIDWAY>(quad, design, state, block, bends, out),
-            GroundBetween::Quarters(halves) => {
+            SubSampleProfile::AtSamples => self.run_on::<Q, AT_SAMPLES>(quad, design, state, block, &[], out),
+            SubSampleProfile::Midway(quartic_correction) => {
+                self.run_on::<Q, MIDWAY>(quad, design, state, block, quartic_correction, out)
+            }
+            SubSampleProfile::Quarters(halves) => {
                 self.run_on::<Q, QUARTERS>(quad, design, state, block, halves.as_flattened(), out);
             }
         }
@@ -130,13 +132,13 @@ impl ExactEvent {
 
     /// Steps on one kind of ground: a bend a sample, or two.
     #[inline(always)]
-    fn run_on<Q: Quad, const KIND: u8>(
+    fn run_on<Q: F64x4, const KIND: u8>(
         &self,
         quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
         block: &CleanBlock,
-        bends: &[Bend],
+        quartic_correction: &[QuarticCorrection],
         out: &mut [ContactSample],
     ) {
         let [mut h0, mut h1, mut h2] = state.heights_m;
@@ -149,7 +151,7 @@ impl ExactEvent {
             let force = 0.5 * (f1 + f2);
             let which = usize::from(pressed);
             let maps = &self.regimes[which].maps;
-            let bend = |half: usize| bends.get(half).copied().unwrap_or_default();
+            let bend = |half: usize| quartic_correction.get(half).copied().unwrap_or_default();
             let (mut c, mut later) = ([c1, c2, c3, 0.0], None);
             let (next, mut stays) = match KIND {
                 MIDWAY => {
@@ -223,12 +225,12 @@ impl ExactEvent {
     pub(super) fn walk(&self, level: Level, y: [f64; 4], profile: &Profile, force_n: f64) -> Step {
         at_level!(level.at_most_256_bits(), s => {
             let zero: f64x4<_> = SimdBase::splat(s, 0.0);
-            self.walk_in(Apart(zero), y, profile, force_n)
+            self.walk_in(Unfused(zero), y, profile, force_n)
         })
     }
 
     #[inline(always)]
-    fn walk_in<Q: Quad>(&self, quad: Q, mut y: [f64; 4], profile: &Profile, force_n: f64) -> Step {
+    fn walk_in<Q: F64x4>(&self, quad: Q, mut y: [f64; 4], profile: &Profile, force_n: f64) -> Step {
         let Profile { mut c, later, least } = *profile;
         let ticks = 1_usize << self.finest;
         let (mut now, mut level) = (0, 0);
@@ -272,7 +274,7 @@ impl ExactEvent {
     /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at
     /// its end.
     #[inline(always)]
-    fn split<Q: Quad>(
+    fn split<Q: F64x4>(
         &self,
         quad: Q,
         before: f64,

@@ -11,7 +11,7 @@
 //! unit is never squared, which keeps the undamped flow conservative to 1e-16 a sample.
 
 use super::Probe;
-use super::quad::Quad;
+use super::quad::F64x4;
 
 /// Rows and columns of the augmented vector.
 const N: usize = 10;
@@ -30,7 +30,7 @@ pub(super) struct Map {
 impl Map {
     /// Applies the map. The profile and force terms are summed first: they are known early.
     #[inline(always)]
-    pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 4], force_n: f64) -> Q {
+    pub fn apply<Q: F64x4>(&self, y: Q, c: [f64; 4], force_n: f64) -> Q {
         let [_, _, _, _, _, _, _, force, fourth] = &self.columns;
         let inputs = y.load(fourth).times_plus(y.splat(c[3]), self.cubic(y, [c[0], c[1], c[2]]));
         self.apply_with(y, y.load(force).times_plus(y.splat(force_n), inputs))
@@ -38,13 +38,13 @@ impl Map {
 
     /// Flow for a profile whose c₄ is zero.
     #[inline(always)]
-    pub fn apply_cubic<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
+    pub fn apply_cubic<Q: F64x4>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
         let inputs = self.cubic(y, c);
         self.apply_with(y, y.load(&self.columns[7]).times_plus(y.splat(force_n), inputs))
     }
 
     #[inline(always)]
-    fn cubic<Q: Quad>(&self, y: Q, c: [f64; 3]) -> Q {
+    fn cubic<Q: F64x4>(&self, y: Q, c: [f64; 3]) -> Q {
         let [_, _, _, _, slope, bend, twist, ..] = &self.columns;
         let inputs = y.load(slope).mul(y.splat(c[0]));
         let inputs = y.load(bend).times_plus(y.splat(c[1]), inputs);
@@ -53,13 +53,13 @@ impl Map {
 
     /// Flow for a straight profile: it rises by `rise_m` within the sample.
     #[inline(always)]
-    pub fn apply_straight<Q: Quad>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
+    pub fn apply_straight<Q: F64x4>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
         let inputs = y.load(&self.columns[4]).mul(y.splat(rise_m));
         self.apply_with(y, y.load(&self.columns[7]).times_plus(y.splat(force_n), inputs))
     }
 
     #[inline(always)]
-    fn apply_with<Q: Quad>(&self, y: Q, inputs: Q) -> Q {
+    fn apply_with<Q: F64x4>(&self, y: Q, inputs: Q) -> Q {
         let [gap, stretch, pad, finger, ..] = &self.columns;
         let positions = y.load(gap).times_plus(y.spread::<0>(), inputs);
         let positions = y.load(stretch).times_plus(y.spread::<1>(), positions);
@@ -105,7 +105,7 @@ impl Regime {
     ///
     /// `rest_m_n` is where (d, p) rests under 1 N. The mean of two maps rests elsewhere by a few
     /// picometres; its force column is made to fit, so that a pressed finger stays where it is.
-    pub fn become_between(&mut self, a: &Self, b: &Self, share: f64, rest_m_n: [f64; 2]) {
+    pub fn interpolate(&mut self, a: &Self, b: &Self, share: f64, rest_m_n: [f64; 2]) {
         for (own, (a, b)) in self.maps.iter_mut().zip(a.maps.iter().zip(&b.maps)) {
             for (own, (a, b)) in own.columns.iter_mut().zip(a.columns.iter().zip(&b.columns)) {
                 for (own, (a, b)) in own.iter_mut().zip(a.iter().zip(b)) {
@@ -232,7 +232,7 @@ impl Units {
 #[cfg(test)]
 mod tests {
     use super::super::exact_event::at_end;
-    use super::super::quad::{Apart, Quad};
+    use super::super::quad::{F64x4, Unfused};
     use super::*;
     use crate::simd::BASE;
     use fearless_simd::{SimdBase, f64x4};
@@ -241,7 +241,7 @@ mod tests {
 
     fn apply(map: &Map, y: [f64; 4], c: [f64; 4], force_n: f64) -> [f64; 4] {
         let zero: f64x4<_> = SimdBase::splat(BASE, 0.0);
-        map.apply(Apart(zero).load(&y), c, force_n).array()
+        map.apply(Unfused(zero).load(&y), c, force_n).array()
     }
 
     #[test]

@@ -9,7 +9,7 @@
 //! | gap beyond 0.1 m, penetration beyond 20 mm and twice what the force presses in | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
-use super::bends::{Bend, GroundBetween, are_believed};
+use super::quartic_correction::{QuarticCorrection, SubSampleProfile, are_valid};
 use super::{ContactState, MicroContact};
 pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 
@@ -88,42 +88,44 @@ pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
 }
 
-/// Bends of up to [`GRID`] rows that a kernel can trust: what cannot be one is none.
+/// QuarticCorrections of up to [`GRID`] rows that a kernel can trust: what cannot be one is none.
 pub(super) struct CleanGround {
-    halves: [[Bend; 2]; GRID],
-    bends: [Bend; GRID],
+    halves: [[QuarticCorrection; 2]; GRID],
+    quartic_correction: [QuarticCorrection; GRID],
 }
 
 impl CleanGround {
     #[cold]
     #[inline(never)]
-    pub fn of(ground: GroundBetween<'_>) -> Self {
-        let mut clean = Self { halves: [[[0.0; 4]; 2]; GRID], bends: [[0.0; 4]; GRID] };
+    pub fn of(ground: SubSampleProfile<'_>) -> Self {
+        let mut clean = Self { halves: [[[0.0; 4]; 2]; GRID], quartic_correction: [[0.0; 4]; GRID] };
         match ground {
-            GroundBetween::AtSamples => {}
-            GroundBetween::Midway(bends) => {
-                clean.bends.iter_mut().zip(bends).for_each(|(to, from)| *to = believed(from))
-            }
-            GroundBetween::Quarters(halves) => {
+            SubSampleProfile::AtSamples => {}
+            SubSampleProfile::Midway(quartic_correction) => clean
+                .quartic_correction
+                .iter_mut()
+                .zip(quartic_correction)
+                .for_each(|(to, from)| *to = is_valid(from)),
+            SubSampleProfile::Quarters(halves) => {
                 let each = clean.halves.as_flattened_mut().iter_mut().zip(halves.as_flattened());
-                each.for_each(|(to, from)| *to = believed(from));
+                each.for_each(|(to, from)| *to = is_valid(from));
             }
         }
         clean
     }
 
     /// The first so many of them, as many as `ground` knows.
-    pub fn ground(&self, ground: GroundBetween<'_>, count: usize) -> GroundBetween<'_> {
+    pub fn ground(&self, ground: SubSampleProfile<'_>, count: usize) -> SubSampleProfile<'_> {
         match ground {
-            GroundBetween::AtSamples => GroundBetween::AtSamples,
-            GroundBetween::Midway(_) => GroundBetween::Midway(&self.bends[..count]),
-            GroundBetween::Quarters(_) => GroundBetween::Quarters(&self.halves[..count]),
+            SubSampleProfile::AtSamples => SubSampleProfile::AtSamples,
+            SubSampleProfile::Midway(_) => SubSampleProfile::Midway(&self.quartic_correction[..count]),
+            SubSampleProfile::Quarters(_) => SubSampleProfile::Quarters(&self.halves[..count]),
         }
     }
 }
 
-fn believed(bend: &Bend) -> Bend {
-    if are_believed(&[*bend]) { *bend } else { [0.0; 4] }
+fn is_valid(bend: &QuarticCorrection) -> QuarticCorrection {
+    if are_valid(&[*bend]) { *bend } else { [0.0; 4] }
 }
 
 /// A height or force that a contact can start from.

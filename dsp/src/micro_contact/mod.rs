@@ -38,7 +38,6 @@
 //!
 //! A row of Euler holds the force at the row's time (the mean over the step centred on it); the
 //! other two give the mean over the step that ends at the row.
-mod bends;
 mod choice;
 mod energy_conserving;
 mod exact_event;
@@ -46,11 +45,11 @@ mod flow;
 mod guard;
 mod probe;
 mod quad;
+mod quartic_correction;
 mod semi_implicit;
 mod state;
 mod stiffening;
 
-pub use bends::{Bend, Bends, GroundBetween};
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
@@ -58,6 +57,7 @@ pub use probe::{
     CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
     PAD_STIFFNESS_N_M, Probe, RIDGE_M,
 };
+pub use quartic_correction::{QuarticCorrection, QuarticCorrections, SubSampleProfile};
 pub use state::{ContactSample, ContactState, Onset};
 pub use stiffening::RUNGS_AN_OCTAVE;
 
@@ -68,7 +68,7 @@ use exact_event::ExactEvent;
 use fearless_simd::SimdBase;
 use fearless_simd::f64x4;
 use guard::{CleanBlock, CleanGround, GRID};
-use quad::{Halves, Quad};
+use quad::{F64x2Pair, F64x4};
 use semi_implicit::SemiImplicit;
 
 /// A contact whose skin is nearer than this to its resting place is settled, m.
@@ -218,8 +218,8 @@ impl MicroContact {
     #[must_use]
     pub fn riding(&self, height_m: f64, normal_force_n: f64, velocity_m_s: f64) -> ContactState {
         let mut state = self.at_rest(height_m, normal_force_n);
-        let believed = guard::is_height(velocity_m_s * self.step_s);
-        let speed = if believed { velocity_m_s } else { 0.0 };
+        let is_valid = guard::is_height(velocity_m_s * self.step_s);
+        let speed = if is_valid { velocity_m_s } else { 0.0 };
         let drift = speed * self.step_s;
         if let Scheme::SemiImplicit(scheme) = &self.scheme {
             state.y[0] += drift / scheme.substeps as f64;
@@ -234,7 +234,7 @@ impl MicroContact {
     /// sample before, there, and one a sample later. The next input is the last of them, or with a
     /// latency the one after it.
     #[must_use]
-    pub fn leaving_the_line(
+    pub fn sliding_along_a_line(
         &self,
         heights_m: [f64; 3],
         normal_force_n: f64,
@@ -296,22 +296,22 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
-        self.run_over(state, height_m, normal_force_n, GroundBetween::AtSamples, out);
+        self.run_over(state, height_m, normal_force_n, SubSampleProfile::AtSamples, out);
     }
 
-    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]). Only the
+    /// [`Self::run`] over ground that is known between its samples as well ([`QuarticCorrections`]). Only the
     /// exact scheme looks at it.
     pub fn run_over(
         &self,
         state: &mut ContactState,
         height_m: &[f64],
         normal_force_n: &[f64],
-        ground: GroundBetween<'_>,
+        ground: SubSampleProfile<'_>,
         out: &mut [ContactSample],
     ) {
         // Four numbers fill no wider vector.
         at_level!(self.level.at_most_256_bits(), s => {
-            let (quad, halves): (f64x4<_>, _) = (SimdBase::splat(s, 0.0), Halves::zero(s));
+            let (quad, halves): (f64x4<_>, _) = (SimdBase::splat(s, 0.0), F64x2Pair::zero(s));
             self.run_blocks(quad, halves, state, (height_m, normal_force_n, ground), out);
         });
     }
@@ -352,12 +352,12 @@ impl MicroContact {
 
     /// Cuts a run at the grid of the contact's clock.
     #[inline(always)]
-    fn run_blocks<Q: Quad, E: Quad>(
+    fn run_blocks<Q: F64x4, E: F64x4>(
         &self,
         quad: Q,
         halves: E,
         state: &mut ContactState,
-        (mut height_m, mut force_n, mut ground): (&[f64], &[f64], GroundBetween<'_>),
+        (mut height_m, mut force_n, mut ground): (&[f64], &[f64], SubSampleProfile<'_>),
         mut out: &mut [ContactSample],
     ) {
         let mut block = CleanBlock::EMPTY;

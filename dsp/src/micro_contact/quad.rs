@@ -9,7 +9,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f64x2, f64x4};
 
 /// Four lanes. A value stands for the right to use its instructions: others are made by it.
-pub(super) trait Quad: Copy {
+pub(super) trait F64x4: Copy {
     /// Four numbers.
     fn load(self, from: &[f64; 4]) -> Self;
     fn array(self) -> [f64; 4];
@@ -31,7 +31,7 @@ pub(super) trait Quad: Copy {
 }
 
 /// One vector, as wide as the level has it.
-impl<S: Set> Quad for f64x4<S> {
+impl<S: Set> F64x4 for f64x4<S> {
     #[inline(always)]
     fn load(self, from: &[f64; 4]) -> Self {
         Self::load_array_ref(self.token(), from)
@@ -74,9 +74,9 @@ impl<S: Set> Quad for f64x4<S> {
 /// Another vector whose products and sums round apart even where the level could fuse them: for
 /// what gave those bits before it was worked out four at a time.
 #[derive(Clone, Copy)]
-pub(super) struct Apart<Q>(pub Q);
+pub(super) struct Unfused<Q>(pub Q);
 
-impl<Q: Quad> Quad for Apart<Q> {
+impl<Q: F64x4> F64x4 for Unfused<Q> {
     #[inline(always)]
     fn load(self, from: &[f64; 4]) -> Self {
         Self(self.0.load(from))
@@ -117,9 +117,9 @@ impl<Q: Quad> Quad for Apart<Q> {
 
 /// Two pairs: spreading a lane of a pair takes one cycle where one of four takes three.
 #[derive(Clone, Copy)]
-pub(super) struct Halves<S: Set>(f64x2<S>, f64x2<S>);
+pub(super) struct F64x2Pair<S: Set>(f64x2<S>, f64x2<S>);
 
-impl<S: Set> Halves<S> {
+impl<S: Set> F64x2Pair<S> {
     /// Zeros.
     #[inline(always)]
     pub fn zero(token: S) -> Self {
@@ -128,7 +128,7 @@ impl<S: Set> Halves<S> {
     }
 }
 
-impl<S: Set> Quad for Halves<S> {
+impl<S: Set> F64x4 for F64x2Pair<S> {
     #[inline(always)]
     fn load(self, [a, b, c, d]: &[f64; 4]) -> Self {
         let token = self.0.token();

@@ -12,7 +12,7 @@
 //! time; its velocity is the mean of the two half-step velocities around it.
 
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
-use super::quad::Quad;
+use super::quad::F64x4;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
 /// Columns of one (sub-)step.
@@ -49,7 +49,7 @@ impl SemiImplicit {
     /// y⁺ for the gap `d` at the row's time; lane 0 of y is not used. The sums are grouped so that
     /// what is known late is added last.
     #[inline(always)]
-    fn advance<Q: Quad>(&self, d: f64, penetration: f64, y: Q, force_n: f64) -> Q {
+    fn advance<Q: F64x4>(&self, d: f64, penetration: f64, y: Q, force_n: f64) -> Q {
         let springs = y.load(&self.force).times_plus(y.splat(force_n), y.load(&[d, 0.0, 0.0, 0.0]));
         let springs = y.load(&self.stretch).times_plus(y.spread::<1>(), springs);
         let dampers = y.load(&self.pad_velocity).mul(y.spread::<2>());
@@ -59,7 +59,7 @@ impl SemiImplicit {
 
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
-    pub fn run<Q: Quad>(
+    pub fn run<Q: F64x4>(
         &self,
         quad: Q,
         design: &MicroContact,
@@ -75,7 +75,7 @@ impl SemiImplicit {
     }
 
     #[inline(always)]
-    fn run_steps<Q: Quad>(
+    fn run_steps<Q: F64x4>(
         &self,
         quad: Q,
         design: &MicroContact,

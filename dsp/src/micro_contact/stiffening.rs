@@ -30,7 +30,7 @@ impl MicroContact {
 
     /// Becomes the design between `softer` (`share` 0) and `harder` (1), two rungs of one ladder. A
     /// contact's state goes on as it is.
-    pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64) {
+    pub fn interpolate(&mut self, softer: &Self, harder: &Self, share: f64) {
         let mix = |a: f64, b: f64| a + share * (b - a);
         self.probe = softer.probe;
         self.probe.contact_stiffness_n_m =
@@ -40,7 +40,7 @@ impl MicroContact {
         let rest_m_n = [-1.0 / self.probe.contact_stiffness_n_m, 1.0 / self.probe.pad_stiffness_n_m];
         match (&mut self.scheme, &softer.scheme, &harder.scheme) {
             (Scheme::ExactEvent(own), Scheme::ExactEvent(a), Scheme::ExactEvent(b)) => {
-                own.become_between(a, b, share, rest_m_n);
+                own.interpolate(a, b, share, rest_m_n);
             }
             (Scheme::SemiImplicit(own), Scheme::SemiImplicit(a), Scheme::SemiImplicit(b)) => {
                 // Everything but the contact's column is the same, and that is proportional to k.

@@ -8,9 +8,9 @@
 //! other; the bank renders the same 16 modes at a time, in the instructions that its [`Level`]
 //! stands for, and leaves out the groups that have rung out.
 
-use super::ahead::{self, AheadGroup};
-use super::awake::Awake;
+use super::active_groups::ActiveGroups;
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
+use super::free_response::{self, FreeResponse};
 use super::kernel::Kernel;
 use super::shedding::{MODE_LEVELS, SheddingLevels};
 use super::{Input, SLEEP_AMPLITUDE, retune, sleep};
@@ -48,7 +48,7 @@ pub enum Inputs<'a> {
 /// impulses_n_s[0] = 1e-3;
 /// let mut out = [0.0; 128];
 /// bank.render(0, Inputs::One(&impulses_n_s), &mut out);
-/// assert_eq!(bank.awake(), 1);
+/// assert_eq!(bank.active_groups(), 1);
 /// // A quarter of a period later it is at its peak.
 /// assert!((out[27] - 1e-3).abs() < 1e-5);
 /// # Ok::<(), asperity_dsp::DesignError>(())
@@ -58,7 +58,7 @@ pub struct ModalBank<G, S> {
     kernel: Kernel,
     groups: G,
     states: S,
-    awake: Awake,
+    active_groups: ActiveGroups,
     threshold: f32,
 }
 
@@ -70,16 +70,16 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// and [`in_sections`](Self::in_sections).
     pub fn new(level: Level, groups: G, states: S) -> Self {
         let count = groups.as_ref().len().min(states.as_ref().len());
-        let awake = Awake::of(&states.as_ref()[..count], &[count; MODE_LEVELS]);
-        Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
+        let active_groups = ActiveGroups::of(&states.as_ref()[..count], &[count; MODE_LEVELS]);
+        Self { kernel: Kernel(level), groups, states, active_groups, threshold: SLEEP_AMPLITUDE }
     }
 
     /// Falls asleep section by section, between each two levels at which groups are left out,
     /// because in each what rings longest stands first.
     #[must_use]
     pub fn in_sections(self, levels: &SheddingLevels) -> Self {
-        let awake = Awake::of(&self.states.as_ref()[..self.groups()], levels);
-        Self { awake, ..self }
+        let active_groups = ActiveGroups::of(&self.states.as_ref()[..self.groups()], levels);
+        Self { active_groups, ..self }
     }
 
     /// A mode is put exactly to rest once its amplitude is below this, in units of the output; 0
@@ -105,30 +105,40 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// others ring out: what a machine that is too slow leaves out.
     pub fn render_leading(&mut self, driven: usize, first_sample: u64, inputs: Inputs<'_>, out: &mut [f32]) {
         let (groups, states) = (self.groups.as_ref(), self.states.as_mut());
-        let bank =
-            super::awake::Bank { kernel: self.kernel, groups, states, driven, threshold: self.threshold };
+        let bank = super::active_groups::Bank {
+            kernel: self.kernel,
+            groups,
+            states,
+            driven,
+            threshold: self.threshold,
+        };
         match inputs {
             Inputs::One(impulses) => {
-                self.awake.run(bank, first_sample, &[Input { impulses, gains: &[] }], true, out);
+                self.active_groups.run(bank, first_sample, &[Input { impulses, gains: &[] }], true, out);
             }
-            Inputs::Placed(inputs) => self.awake.run(bank, first_sample, inputs, false, out),
+            Inputs::Placed(inputs) => self.active_groups.run(bank, first_sample, inputs, false, out),
         }
     }
 
-    /// Zero-input response of the coming 64 samples, as `groups` have its modes ([`AheadGroup`]):
+    /// Zero-input response of the coming 64 samples, as `groups` have its modes ([`FreeResponse`]):
     /// groups beyond them are not heard.
     ///
     /// At an absolute multiple of [`GRID_SAMPLES`](super::GRID_SAMPLES), where states are as exact
     /// as they get.
-    pub fn ahead(&self, groups: &[AheadGroup], out: &mut [f32; GRID_SAMPLES as usize]) {
-        let awake = self.awake().min(groups.len());
-        ahead::ahead(self.level(), &groups[..awake], &self.states.as_ref()[..awake], out);
+    pub fn ahead(&self, groups: &[FreeResponse], out: &mut [f32; GRID_SAMPLES as usize]) {
+        let active_groups = self.active_groups().min(groups.len());
+        free_response::ahead(
+            self.level(),
+            &groups[..active_groups],
+            &self.states.as_ref()[..active_groups],
+            out,
+        );
     }
 
     /// Forgets all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
-        self.awake.sleep();
+        self.active_groups.sleep();
     }
 
     /// Groups of [`LANES`](super::LANES) modes.
@@ -138,8 +148,8 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
 
     /// Number of leading groups that hold all that are rendered at the moment; the rest sleep until
     /// the next impulse.
-    pub fn awake(&self) -> usize {
-        self.awake.groups()
+    pub fn active_groups(&self) -> usize {
+        self.active_groups.groups()
     }
 
     /// Tests whether every mode is exactly at rest.

@@ -60,18 +60,18 @@
 //! [`SLEEP_AMPLITUDE`].
 //!
 //! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what
-//! sleeps. [`AheadGroup`] tells what they will do by themselves, [`Culling`] says which modes are
-//! worth it, [`FirstSamples`] what the impulse ring takes from the beginning of a strike.
+//! sleeps. [`FreeResponse`] tells what they will do by themselves, [`Culling`] says which modes are
+//! worth it, [`OnsetCorrection`] what the impulse ring takes from the beginning of a strike.
 
-mod ahead;
-mod awake;
+mod active_groups;
 mod bank;
 mod culling;
 mod design;
 mod direct;
-mod first_samples;
+mod free_response;
 mod job;
 mod kernel;
+mod onset_correction;
 mod reference;
 mod retune;
 mod set;
@@ -81,14 +81,14 @@ mod sums;
 mod vector;
 mod walk;
 
-pub use ahead::AheadGroup;
 pub use bank::{Inputs, ModalBank, lane_gains};
 pub use culling::{Culling, audible};
 pub use design::{
     GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, design_groups, sort_by_decay,
 };
-pub use first_samples::{FirstSamples, MissingSamples};
+pub use free_response::FreeResponse;
 pub use job::{Input, MAX_INPUTS};
+pub use onset_correction::{OnsetCorrection, OnsetSamples};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use shedding::{LOUDEST_DB_SPL, MODE_LEVELS, RANKED, SAFETY_DB, SheddingLevels, shedding_order};
 pub use sleep::{SLEEP_AMPLITUDE, ringing_s};

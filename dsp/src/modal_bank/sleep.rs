@@ -14,7 +14,7 @@ pub const SLEEP_AMPLITUDE: f32 = 1e-8;
 #[inline(always)]
 pub(super) fn settle(groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
     let (low, high) = (threshold * threshold, ABSURD_AMPLITUDE * ABSURD_AMPLITUDE);
-    let mut awake = 0;
+    let mut active_groups = 0;
     for (i, (group, state)) in groups.iter().zip(states).enumerate() {
         let mut rings = 0_u32;
         for (lane, (v, w)) in state.v.iter_mut().zip(&mut state.w).enumerate() {
@@ -28,10 +28,10 @@ pub(super) fn settle(groups: &[ModeGroup], states: &mut [GroupState], threshold:
             rings += u32::from(keep);
         }
         if rings > 0 {
-            awake = i + 1;
+            active_groups = i + 1;
         }
     }
-    awake
+    active_groups
 }
 
 /// See [`super::ModalBank::energy`].

@@ -27,7 +27,7 @@
 //! in no band: the estimate overshoots for some milliseconds. Jittered stamps of a straight stroke
 //! lead it by up to 2 ms. It is a choice for hands on smooth strokes, and not the default.
 
-use super::reckoning::Belief;
+use super::reckoning::Horizon;
 use super::{PathMode, TrajectoryDesign};
 
 /// Reports that count.
@@ -53,9 +53,9 @@ const LINE: [f64; 2] = [1e2, 1e4];
 /// Times in which a jump of the velocity is made up, and one of the place, s.
 const MADE_UP_S: [f64; 2] = [7e-4, 0.1];
 /// Weight of the past when the models of noise are compared …
-const PAST: f64 = 0.8;
+const FORGETTING: f64 = 0.8;
 /// … more noise counts where it foretells so much better, of a variance …
-const CLEARLY: f64 = 0.6;
+const SELECTION_RATIO: f64 = 0.6;
 /// … and the most that one report may count, m².
 const MOST_M2: f64 = 4e-6;
 
@@ -84,7 +84,7 @@ pub(super) struct Estimate {
     /// One for each model of noise.
     polynomials: [Polynomial; MODELS],
     /// Prediction errors of each, m².
-    surprise_m2: [f64; MODELS],
+    innovation_m2: [f64; MODELS],
     /// Place and velocity of what is still to be made up, of each axis.
     rest: [[f64; 2]; 2],
     /// Since the velocity is no longer believed: place and velocity.
@@ -100,7 +100,7 @@ impl Estimate {
             len: 1,
             centre_s: 0.0,
             polynomials: [[[0.0; TERMS]; 2]; MODELS],
-            surprise_m2: [0.0; MODELS],
+            innovation_m2: [0.0; MODELS],
             rest: [[0.0; 2]; 2],
             glide: None,
         };
@@ -117,16 +117,16 @@ impl Estimate {
         &mut self,
         design: &TrajectoryDesign,
         (now, sample): (u64, u64),
-        belief: Belief,
+        belief: Horizon,
         velocity_m_s: Option<[f64; 2]>,
         afresh: bool,
     ) {
         let before = self.at(design, now, belief);
         let latest = self.reports[self.len - 1].sample;
-        for (surprise_m2, polynomial) in self.surprise_m2.iter_mut().zip(&self.polynomials) {
+        for (innovation_m2, polynomial) in self.innovation_m2.iter_mut().zip(&self.polynomials) {
             let since_s = (sample - latest) as f64 * design.sample_period_s - self.centre_s;
             let [u, v] = [0, 1].map(|axis| value(&polynomial[axis], since_s)[0]);
-            *surprise_m2 = PAST * *surprise_m2 + (u * u + v * v).min(MOST_M2);
+            *innovation_m2 = FORGETTING * *innovation_m2 + (u * u + v * v).min(MOST_M2);
         }
         let report = Report { sample, position_m: [0.0; 2], velocity_m_s };
         let has_stopped = velocity_m_s == Some([0.0; 2]) && {
@@ -167,13 +167,13 @@ impl Estimate {
     /// Prediction of the model of noise with the least error.
     fn best(&self) -> &Polynomial {
         let better = |best: usize, model: usize| {
-            if self.surprise_m2[model] < CLEARLY * self.surprise_m2[best] { model } else { best }
+            if self.innovation_m2[model] < SELECTION_RATIO * self.innovation_m2[best] { model } else { best }
         };
         &self.polynomials[(1..MODELS).fold(0, better)]
     }
 
     /// Place and velocity of each axis at a sample; beyond belief those at its end.
-    fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> [[f64; 2]; 2] {
+    fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Horizon) -> [[f64; 2]; 2] {
         let latest = self.reports[self.len - 1].sample;
         let age = (sample.wrapping_sub(latest) as i64).min(belief.whole_samples);
         let since_s = age as f64 * design.sample_period_s - design.filter.group_delay_s() - self.centre_s;
@@ -190,7 +190,7 @@ impl Estimate {
         &mut self,
         design: &TrajectoryDesign,
         sample: u64,
-        belief: Belief,
+        belief: Horizon,
         [kept_fast, kept_slow]: [f64; 2],
     ) -> [[f64; 2]; 2] {
         let latest = self.reports[self.len - 1].sample;
@@ -210,7 +210,7 @@ impl Estimate {
     }
 
     /// One sample further while nothing is reported.
-    fn glide_on(&mut self, design: &TrajectoryDesign, sample: u64, belief: Belief) {
+    fn glide_on(&mut self, design: &TrajectoryDesign, sample: u64, belief: Horizon) {
         let rest = core::mem::take(&mut self.rest);
         let mut glide = self.at(design, sample, belief);
         self.rest = rest;

@@ -20,9 +20,9 @@
 //! noisy, or a game's velocities do not belong to its places.
 
 /// Weight of the past in what has been foretold.
-const PAST: f64 = 0.5;
+const FORGETTING: f64 = 0.5;
 /// Ratio of squared errors below which the bent one of two predictions counts.
-const CLEARLY: f64 = 4.0;
+const SELECTION_RATIO: f64 = 4.0;
 /// Event periods for which a bend is believed.
 const BELIEVED_PERIODS: f64 = 1.25;
 /// Intervals below this are no intervals, s.
@@ -99,10 +99,10 @@ impl Bend {
         self.raw = if self.known == 3 { self.through_three(period_s) } else { Turn::default() };
         let [straight, bent] = self.missed_m2;
         // One that is said to stand stands.
-        if velocity_m_s == [0.0; 2] || straight <= CLEARLY * bent {
+        if velocity_m_s == [0.0; 2] || straight <= SELECTION_RATIO * bent {
             return Turn::default();
         }
-        let trust = 1.0 - CLEARLY * bent / straight;
+        let trust = 1.0 - SELECTION_RATIO * bent / straight;
         Turn {
             acceleration_m_s2: self.raw.acceleration_m_s2.map(|a| trust * a),
             jerk_m_s3: self.raw.jerk_m_s3.map(|j| trust * j),
@@ -114,7 +114,7 @@ impl Bend {
     fn compare(&mut self, gap_s: f64, covered_m: [f64; 2], velocity_m_s: [f64; 2]) {
         let [further, faster] = self.raw.after(gap_s);
         for (missed_m2, share) in self.missed_m2.iter_mut().zip([0.0, 1.0]) {
-            *missed_m2 *= PAST;
+            *missed_m2 *= FORGETTING;
             for axis in 0..2 {
                 let told_m_s = self.velocities_m_s[0][axis];
                 let place_m = covered_m[axis] - told_m_s * gap_s - share * further[axis];

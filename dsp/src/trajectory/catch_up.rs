@@ -19,7 +19,7 @@
 use super::{PathPoint, TrajectoryDesign};
 
 /// Share of a contact's own speed by which the path may outrun it.
-pub(super) const HURRY: f64 = 0.35;
+pub(super) const MAX_OVERSPEED: f64 = 0.35;
 
 /// Time in which a path reaches the contact's own speed, s. Chosen: over hills a hitch is then felt
 /// at most 1.9 times as strongly as the stroke.
@@ -124,7 +124,7 @@ impl CatchUp {
 
 /// Largest speed of a path besides a contact that moves at `now_m_s`.
 fn room_m_s(own_speed_m_s: f64, now_m_s: f64) -> f64 {
-    (1.0 + HURRY) * own_speed_m_s - now_m_s
+    (1.0 + MAX_OVERSPEED) * own_speed_m_s - now_m_s
 }
 
 fn length([u, v]: [f64; 2]) -> f64 {

@@ -2,7 +2,7 @@
 //! reported velocities, linear for the force.
 
 use super::TrajectoryDesign;
-use super::reckoning::Belief;
+use super::reckoning::Horizon;
 
 /// Events kept. They are at least an eighth of the delay apart (closer ones replace each other), so
 /// the delay never reaches back beyond the oldest.
@@ -37,7 +37,7 @@ impl History {
         &mut self,
         design: &TrajectoryDesign,
         sample: u64,
-        belief: Belief,
+        belief: Horizon,
         velocity_m_s: [f64; 2],
         force_n: f64,
     ) {
@@ -85,7 +85,7 @@ impl History {
     }
 
     /// Tests whether the path beyond the latest event has come to its end.
-    pub fn has_glided_out(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> bool {
+    pub fn has_glided_out(&self, design: &TrajectoryDesign, sample: u64, belief: Horizon) -> bool {
         self.age_of_latest(design, sample) > belief.whole_samples + fall_samples(design, belief)
     }
 
@@ -95,7 +95,7 @@ impl History {
 
     /// Position and force one delay before `sample`. Beyond the latest event the velocity is wholly
     /// believed as `belief` says, and then falls linearly to rest over twice the time of its fade.
-    pub fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> ([f64; 2], f64) {
+    pub fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Horizon) -> ([f64; 2], f64) {
         let knots = &self.knots[..self.len];
         let latest = &knots[self.len - 1];
         let age = self.age_of_latest(design, sample);
@@ -117,7 +117,7 @@ impl History {
 }
 
 /// Time in which a velocity falls once it is no longer wholly trusted.
-fn fall_samples(design: &TrajectoryDesign, belief: Belief) -> i64 {
+fn fall_samples(design: &TrajectoryDesign, belief: Horizon) -> i64 {
     ((2.0 * belief.fade_s / design.sample_period_s) as i64).max(1)
 }
 

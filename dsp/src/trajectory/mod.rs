@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | p₀, v₀, t₀ | the latest [`PathEvent`] | position unwrapped, velocity reported or estimated |
 //! | b | `bend` | how the velocity changes, as far as that has foretold the reports so far; 0 without reported velocities |
-//! | T | `Reckoning`'s running event period | 1–100 ms, 1/60 s until two events are known |
+//! | T | `DeadReckoning`'s running event period | 1–100 ms, 1/60 s until two events are known |
 //! | τ | how a velocity fades that no report renews | T/2, at least 50 ms |
 //! | H_lp | [`TrajectoryDesign`]'s filter | Hasti §III-C: 2nd-order Butterworth, −3 dB at 30 Hz |
 //! | velocity | the filter's band output | smooth, so that pitch does not step at events |
@@ -59,7 +59,7 @@ use bend::Bend;
 use catch_up::CatchUp;
 pub use design::{HERMITE_DELAY_S, PathMode, TrajectoryDesign};
 use history::History;
-use reckoning::Reckoning;
+use reckoning::DeadReckoning;
 pub use reports::{Moved, PathEvent, TELEPORT_FACTOR, TELEPORT_MARGIN_M, UNREPORTED_SPEED_M_S};
 use reports::{carried_back, is_sane};
 use standstill::Standstill;
@@ -93,7 +93,7 @@ pub struct Trajectory {
     origin_m: [f64; 2],
     axes: [State; 2],
     force: State,
-    reckoning: Reckoning,
+    reckoning: DeadReckoning,
     bend: Bend,
     history: History,
     estimate: Estimate,
@@ -131,7 +131,7 @@ impl Trajectory {
             origin_m: [sane.position_m[0] + back[0], sane.position_m[1] + back[1]],
             axes: [State::default(); 2],
             force: State::settled_at(sane.normal_force_n),
-            reckoning: Reckoning::begin(sane.sample, sane.fraction, velocity, sane.normal_force_n),
+            reckoning: DeadReckoning::begin(sane.sample, sane.fraction, velocity, sane.normal_force_n),
             bend: Bend::begin(sane.velocity_m_s.map(or_rest)),
             history: History::begin(sane.sample, velocity, sane.normal_force_n),
             estimate: Estimate::begin(design, sane.sample, sane.velocity_m_s.map(or_rest)),
@@ -181,7 +181,7 @@ impl Trajectory {
 
     /// Goes on as `before`, a path of the same contact until a jump, as far as that has learned to
     /// know its game: the rate of its reports, and whether its zero velocities are to be believed.
-    pub fn succeed(&mut self, before: &Self) {
+    pub fn inherit_rate(&mut self, before: &Self) {
         self.reckoning.keep_rate(&before.reckoning, 0.0);
         self.standstill = before.standstill;
     }

@@ -21,7 +21,7 @@ const LEAST_FADE_S: f64 = 0.05;
 
 /// Time for which a velocity is trusted when no report follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Belief {
+pub(super) struct Horizon {
     /// Wholly, from its report on.
     pub whole_samples: i64,
     /// Time constant with which the velocity then fades, s.
@@ -30,7 +30,7 @@ pub(super) struct Belief {
 
 /// The latest event, at the origin of the path's coordinates, and what follows from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Reckoning {
+pub(super) struct DeadReckoning {
     sample: u64,
     /// Distance of the event beyond its sample, samples; its position is already carried back to
     /// it.
@@ -58,7 +58,7 @@ struct Glide {
     started: bool,
 }
 
-impl Reckoning {
+impl DeadReckoning {
     pub fn begin(sample: u64, fraction: f64, velocity_m_s: [f64; 2], force_n: f64) -> Self {
         let glide = Glide {
             after_samples: -1,
@@ -142,8 +142,8 @@ impl Reckoning {
     }
 
     /// Time for which the latest event's velocity is trusted.
-    pub fn belief(&self, design: &TrajectoryDesign) -> Belief {
-        Belief {
+    pub fn belief(&self, design: &TrajectoryDesign) -> Horizon {
+        Horizon {
             whole_samples: (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64,
             fade_s: (FADE_PERIODS * self.period_s).max(LEAST_FADE_S),
         }
@@ -151,7 +151,7 @@ impl Reckoning {
 
     /// Place of the input `gap_s` after the latest event, relative to it.
     pub fn expected(&self, design: &TrajectoryDesign, gap_s: f64) -> [f64; 2] {
-        let Belief { whole_samples, fade_s } = self.belief(design);
+        let Horizon { whole_samples, fade_s } = self.belief(design);
         let believed_s = whole_samples as f64 * design.sample_period_s;
         let late_s = gap_s - believed_s;
         let on_s = gap_s.min(believed_s);
@@ -177,7 +177,7 @@ impl Reckoning {
     }
 
     fn plan_glide(&mut self, design: &TrajectoryDesign) {
-        let Belief { whole_samples, fade_s } = self.belief(design);
+        let Horizon { whole_samples, fade_s } = self.belief(design);
         self.glide.after_samples = whole_samples;
         self.glide.keep = libm::exp(-design.sample_period_s / fade_s);
     }

@@ -166,12 +166,12 @@ fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
     impulses[5] = 1e-3;
     let (mut out, mut rest) = ([0.0; 64], [0.0; 64]);
     struck.render(0, Inputs::One(&impulses), &mut out);
-    assert_eq!((struck.awake(), struck.groups()), (3, 3));
+    assert_eq!((struck.active_groups(), struck.groups()), (3, 3));
     let mut copy = struck.clone();
     copy.render(64, Inputs::One(&[0.0; 64]), &mut rest);
     assert!(rest.iter().any(|y| *y != 0.0));
     struck.silence();
-    assert!(struck.is_at_rest() && struck.awake() == 0 && struck.energy() == 0.0);
+    assert!(struck.is_at_rest() && struck.active_groups() == 0 && struck.energy() == 0.0);
     out.fill(0.0);
     struck.render(64, Inputs::One(&[0.0; 64]), &mut out);
     assert!(out.iter().all(|y| *y == 0.0));

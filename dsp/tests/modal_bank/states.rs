@@ -26,7 +26,7 @@ fn a_body_that_has_rung_out_sleeps_exactly_and_wakes_with_the_next_impulse() {
         for at in (0..samples).step_by(block) {
             let to = (at + block).min(samples);
             bank.render(7 + at as u64, Inputs::One(&impulses[at..to]), &mut out[at..to]);
-            history.push((bank.awake(), bank.is_at_rest()));
+            history.push((bank.active_groups(), bank.is_at_rest()));
         }
         (out, history)
     };
@@ -69,7 +69,7 @@ fn no_state_is_ever_denormal_while_a_body_rings_out() {
             assert!(bank.is_at_rest() || rings, "block {block}");
         }
     }
-    assert!(banks.iter().all(|bank| bank.awake() == 0));
+    assert!(banks.iter().all(|bank| bank.active_groups() == 0));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn broken_states_are_put_to_rest() {
         let mut impulses = [0.0; 64];
         impulses[3] = poison;
         bank.render(0, Inputs::One(&impulses), &mut out);
-        assert_eq!(bank.awake(), 0);
+        assert_eq!(bank.active_groups(), 0);
         assert!(bank.is_at_rest());
     }
 }

@@ -86,7 +86,8 @@ fn scenes(
         for table in tables.iter().skip(usize::from(section > 0)) {
             let mut tried = [0, 1, 2, 3].map(|section| all[section][0].clone());
             tried[section] = table.clone();
-            let scene = toml::to_string(&scene_of(spec, tried, None, "check", 0)).map_err(FileError::told)?;
+            let scene =
+                toml::to_string(&scene_of(spec, tried, None, "check", 0)).map_err(FileError::from_error)?;
             let file = SceneFile::parse(&scene, &path).map_err(|error| error.out_of(path.display()))?;
             if let Some(missing) = file.named_files().into_iter().find(|path| !path.is_file()) {
                 let name = missing.strip_prefix(folder).unwrap_or(missing);

@@ -220,7 +220,7 @@ impl Manifest {
         remove_left_behind(folder);
         let path = folder.join(NAME);
         let mut text = serde_json::to_string_pretty(self)
-            .map_err(|error| FileError::told(error).within(path.display()))?;
+            .map_err(|error| FileError::from_error(error).within(path.display()))?;
         text.push('\n');
         whole_file::write(&path, text.as_bytes())
     }

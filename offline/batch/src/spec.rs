@@ -323,7 +323,7 @@ impl Spec {
     /// # Errors
     /// As [`Self::load`].
     pub fn parse(text: String, path: &Path) -> Result<Self, FileError> {
-        let right = "docs/formats.md has the keys of a specification";
+        let right = "docs/formats/data-sets.md has the keys of a specification";
         let says: Says = toml::from_str(&text)
             .map_err(|error| FileError::toml(&text, &error, right).within(path.display()))?;
         let mut spec = Self { path: path.to_owned(), text, says };

@@ -73,13 +73,13 @@ impl Stroke {
             *table = drawn_table(written, field, draws).map_err(at)?;
         }
         let table = scene_of(spec, drawn, levels, &id, draws.bits("scene.seed", 0)[0]);
-        let scene = toml::to_string(&table).map_err(|error| at(FileError::told(error)))?;
+        let scene = toml::to_string(&table).map_err(|error| at(FileError::from_error(error)))?;
         let file = SceneFile::parse(&scene, &folder.join(format!("{id}.toml"))).map_err(at)?;
         let touched = &file.surfaces[0];
         let log = motion.log(&touched.name, [touched.width_m, touched.height_m], draws);
         let mut contacts = Vec::new();
-        log.write(&mut contacts).map_err(|error| at(FileError::told(error)))?;
-        let contacts = String::from_utf8(contacts).map_err(|error| at(FileError::told(error)))?;
+        log.write(&mut contacts).map_err(|error| at(FileError::from_error(error)))?;
+        let contacts = String::from_utf8(contacts).map_err(|error| at(FileError::from_error(error)))?;
         let split = split(spec, place, choices.len(), number);
         Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion, file, log })
     }
@@ -118,7 +118,7 @@ pub fn rendered(
     maps: &Maps,
 ) -> Result<Take, FileError> {
     let file = SceneFile::parse(scene, &folder.join(format!("{id}.toml")))?;
-    let log = ContactLog::parse(contacts, id).map_err(FileError::told)?;
+    let log = ContactLog::parse(contacts, id).map_err(FileError::from_error)?;
     render(&file, &log, (spec, levels), id, maps)
 }
 
@@ -136,7 +136,7 @@ fn render(
         ..Overrides::default()
     };
     let options = Options { tail_s: file.tail_s, ..Options::default() };
-    let at = |error| FileError::told(error).within(id);
+    let at = |error| FileError::from_error(error).within(id);
     let Engine { scene, renderer, names, .. } = Engine::from_scene(file, &overrides)?;
     let output = &spec.says.output;
     let (render, force) = match output.force {

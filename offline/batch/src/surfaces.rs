@@ -95,7 +95,8 @@ fn from_scene(path: &Path, folder: &Path) -> Result<Choice, FileError> {
     if file.surfaces.is_empty() {
         return Err(FileError::file(path, "has no [[surface]]", "name a scene with a surface to touch"));
     }
-    let mut scene: Table = text.parse().map_err(|error| FileError::told(error).within(path.display()))?;
+    let mut scene: Table =
+        text.parse().map_err(|error| FileError::from_error(error).within(path.display()))?;
     copy_files(&mut scene, &file, path.parent().unwrap_or(Path::new("")), folder)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Choice { name, scene })
@@ -116,7 +117,7 @@ fn from_table(table: &Table, home: &Path, folder: &Path, field: &str) -> Result<
     let mut known = scene.clone();
     // Distributions are no values yet; only the names of files are looked for.
     without_distributions(&mut known);
-    let written = toml::to_string(&known).map_err(|error| FileError::told(error).within(field))?;
+    let written = toml::to_string(&known).map_err(|error| FileError::from_error(error).within(field))?;
     let path = home.join("spec");
     let own = |error: FileError| error.out_of(path.display()).out_of(format!("surface 1 \"{name}\""));
     let file = SceneFile::parse(&written, &path).map_err(|error| own(error).within(field))?;

@@ -79,8 +79,8 @@ pub fn strokes(
     let (width_m, height_m) = (heights.width as f64 * size.texel_m, heights.height as f64 * size.texel_m);
     let extent = Extent { width_m, height_m, relief_m: size.relief_m };
     let wrap = if tiles { Wrap::Repeat } else { Wrap::Mirror };
-    let map = HeightMap::new(heights, extent, wrap).map_err(FileError::told)?;
-    let surface = Surface::new(map, width_m, height_m).map_err(FileError::told)?;
+    let map = HeightMap::new(heights, extent, wrap).map_err(FileError::from_error)?;
+    let surface = Surface::new(map, width_m, height_m).map_err(FileError::from_error)?;
     // Nothing but the map: the judge shall not tell micro-noise apart.
     let surface = surface.micro_relief_m(0.0).roughness(Roughness::Constant(0.0));
     let config = Config {
@@ -88,13 +88,13 @@ pub fn strokes(
         actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
         ..Config::default()
     };
-    let asperity::Engine { mut scene, renderer, .. } = config.build().map_err(FileError::told)?;
-    let id = scene.add_surface(surface).map_err(FileError::told)?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build().map_err(FileError::from_error)?;
+    let id = scene.add_surface(surface).map_err(FileError::from_error)?;
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
     let latency = renderer.latency_samples();
     let log = random_strokes([width_m, height_m], count, seed);
     let options = Options { tail_s: PAUSE_S, ..Options::default() };
-    let render = offline::render(scene, renderer, &log, &names, &options).map_err(FileError::told)?;
+    let render = offline::render(scene, renderer, &log, &names, &options).map_err(FileError::from_error)?;
     let length = (STROKE_S * RATE_HZ) as usize;
     let mut levels = Levels::new(length);
     let start = |stroke: usize| {

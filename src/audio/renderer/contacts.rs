@@ -1,8 +1,8 @@
 //! Contacts come, go on, are stolen, revived and let go.
 
 use super::Renderer;
-use crate::audio::role::Role;
-use crate::audio::shared::Stretch;
+use crate::audio::binding::Binding;
+use crate::audio::shared::Segment;
 use crate::audio::voice::{EMPTY_FORCE_N, Phase, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis, MAX_FORCE_N};
@@ -16,7 +16,7 @@ use asperity_dsp::trajectory::Trajectory;
 pub(super) struct SilentContact {
     pub(super) contact: ContactId,
     pub(super) surface: usize,
-    pub(super) role: Role,
+    pub(super) role: Binding,
     pub(super) stolen: bool,
 }
 
@@ -42,7 +42,7 @@ impl Renderer {
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
             ContactEvent::Begin { contact, touching, sample } => {
-                let (surface, role) = (touching.surface.index(), Role::from(&touching));
+                let (surface, role) = (touching.surface.index(), Binding::from(&touching));
                 let sample = self.carried(surface, &sample);
                 if !self.resume(contact, surface, role, &sample, stamp) {
                     self.end(contact);
@@ -77,7 +77,7 @@ impl Renderer {
         &mut self,
         contact: ContactId,
         surface: usize,
-        role: Role,
+        role: Binding,
         sample: &ContactSample,
         stamp: Stamp,
     ) -> bool {
@@ -108,7 +108,14 @@ impl Renderer {
 
     /// A contact lands. One that neither presses nor falls is not there yet: its first force begins
     /// it.
-    fn land(&mut self, contact: ContactId, surface: usize, role: Role, sample: &ContactSample, stamp: Stamp) {
+    fn land(
+        &mut self,
+        contact: ContactId,
+        surface: usize,
+        role: Binding,
+        sample: &ContactSample,
+        stamp: Stamp,
+    ) {
         let silent = SilentContact { contact, surface, role, stolen: false };
         if sample.normal_force_n > EMPTY_FORCE_N || sample.closing_m_s > 0.0 {
             self.begin(contact, surface, role, sample, stamp);
@@ -125,7 +132,7 @@ impl Renderer {
         &mut self,
         contact: ContactId,
         surface: usize,
-        role: Role,
+        role: Binding,
         sample: &ContactSample,
         stamp: Stamp,
     ) -> Option<usize> {
@@ -144,7 +151,7 @@ impl Renderer {
         let voice = &mut self.voices[index];
         (voice.surface, voice.role) = (surface, role);
         let output = role.actuator.map_or(&self.shared.idle_output, |channel| &self.channels[channel].output);
-        let at = Stretch { shared: &self.shared, output, position: due.sample(), n: 1 };
+        let at = Segment { shared: &self.shared, output, position: due.sample(), n: 1 };
         voice.begin(contact, sample, due, at, &mut self.seats[surface], &mut self.scratch);
         Some(index)
     }
@@ -213,7 +220,7 @@ impl Renderer {
         let landed = ContactSample { uv, velocity_m_s: Some(velocity_m_s), closing_m_s: 0.0, ..*sample };
         let voice = self.begin(contact, surface, role, &landed, stamp);
         if let Some(voice) = voice {
-            self.voices[voice].succeed(path);
+            self.voices[voice].inherit_rate(path);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::link::stats::Counters;
 use crate::model::event::ContactEvent;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use crate::resource::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_surface::height_field::MAX_BLOCK;
@@ -81,11 +81,11 @@ impl Renderer {
                 Counters::add(&self.counters.impacts, 1);
                 self.strike(body, &spot, &pulse, stamp);
                 if let Some(other) = other {
-                    self.strike(other, &Spot::FIRST, &pulse, stamp);
+                    self.strike(other, &StrikePoint::FIRST, &pulse, stamp);
                 }
                 let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
                 if let Some(holder) = holder {
-                    self.strike(holder, &Spot::FIRST, &answer, stamp);
+                    self.strike(holder, &StrikePoint::FIRST, &answer, stamp);
                 }
                 if let Some(felt) = felt {
                     self.feel(felt, &pulse, stamp);
@@ -164,7 +164,7 @@ impl Renderer {
         }
     }
 
-    fn strike(&mut self, body: usize, spot: &Spot, pulse: &HertzPulse, stamp: Stamp) {
+    fn strike(&mut self, body: usize, spot: &StrikePoint, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sounds = self.due(stamp).later(self.shared.row_latency as u64);
         let level = self.governor.mode_level();

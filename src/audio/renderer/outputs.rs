@@ -7,7 +7,7 @@ use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::model::inner_rate::InnerRate;
-use crate::resource::body::Terms;
+use crate::resource::body::RenderArgs;
 use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
@@ -248,18 +248,18 @@ impl Renderer {
     /// Writes the sound of the bodies, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         self.buses.iter_mut().for_each(|bus| bus.begin(self.position, n));
-        let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
+        let terms = RenderArgs { position: self.position, mode_level: self.governor.mode_level() };
         if let Some(crew) = &mut self.crew {
             crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
         }
         let mut shed = 0;
         for index in self.bodies_used.iter() {
-            let rung = self.crew.as_mut().and_then(|crew| crew.take_body(index));
+            let entry = self.crew.as_mut().and_then(|crew| crew.take_body(index));
             let body = &mut self.bodies[index];
             if body.is_plain() {
-                shed += body.render(terms, rung, self.buses[body.bus()].hear(n));
+                shed += body.render(terms, entry, self.buses[body.bus()].hear(n));
             } else {
-                shed += render_moving(terms, rung, body, &mut self.buses, &mut self.mix.body[..n]);
+                shed += render_moving(terms, entry, body, &mut self.buses, &mut self.mix.body[..n]);
             }
         }
         if let Some(crew) = &mut self.crew {
@@ -294,14 +294,14 @@ impl Renderer {
 #[cold]
 #[inline(never)]
 fn render_moving(
-    terms: Terms,
-    rung: Option<(&[f32], usize)>,
+    terms: RenderArgs,
+    entry: Option<(&[f32], usize)>,
     body: &mut BodySeat,
     buses: &mut [Bus],
     sound: &mut [f32],
 ) -> usize {
     sound.fill(0.0);
-    let shed = body.render(terms, rung, sound);
+    let shed = body.render(terms, entry, sound);
     body.scale(sound);
     body.spread(sound, |bus, i, x| buses[bus].hear(sound.len())[i] += x);
     shed

@@ -12,7 +12,7 @@
 use super::Renderer;
 use crate::link::message::{Made, Retired};
 use crate::link::stats::Counters;
-use crate::resource::body::Terms;
+use crate::resource::body::RenderArgs;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Bodies that ring out at the same time.
@@ -59,7 +59,7 @@ impl Renderer {
         let mut sound = [0.0; 2 * MAX_BLOCK];
         let mode_level = self.governor.mode_level();
         for (from, to) in [(0, to_grid), (to_grid, n)] {
-            let terms = Terms { position: self.position + from as u64, mode_level };
+            let terms = RenderArgs { position: self.position + from as u64, mode_level };
             self.bodies[seat].render(terms, None, &mut sound[from..to]);
         }
         let body = &mut self.bodies[seat];

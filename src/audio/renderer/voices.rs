@@ -2,26 +2,26 @@
 //! the voices.
 
 use super::Renderer;
-use super::crew::Crew;
 use super::outputs::HapticChannel;
+use super::render_pool::RenderPool;
 use crate::audio::body_seat::BodySeat;
-use crate::audio::occupied::Occupied;
+use crate::audio::index_set::IndexSet;
 use crate::audio::seat::Seat;
-use crate::audio::shared::{At, Shared, Stretch};
+use crate::audio::shared::{SampleRange, Segment, Shared};
 use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
 use crate::link::stats::{Counters, Counts};
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
-use crate::resource::body::Terms;
+use crate::resource::body::RenderArgs;
 use crate::resource::body_rub::RubAsked;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 
 /// Destination of the voices' outputs, and the counts.
 struct Gathering<'a> {
-    at: At,
+    at: SampleRange,
     channels: &'a mut [HapticChannel],
     bodies: &'a mut [BodySeat],
     placed: &'a [Option<StrikePlace>],
@@ -62,7 +62,7 @@ impl Gathering<'_> {
             self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
         }
         if let Some((body, slot)) = touched {
-            let spot = Spot { place: self.placed[index], position: slot.surface.strike_position };
+            let spot = StrikePoint { place: self.placed[index], position: slot.surface.strike_position };
             self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
         }
     }
@@ -72,9 +72,9 @@ impl Gathering<'_> {
     #[inline(never)]
     fn gather(
         &mut self,
-        crew: &mut Crew,
-        terms: Terms,
-        (voices, used): (&mut [Box<Voice>], &Occupied),
+        crew: &mut RenderPool,
+        terms: RenderArgs,
+        (voices, used): (&mut [Box<Voice>], &IndexSet),
         seats: &mut [Seat],
         scratch: &mut Box<Scratch>,
     ) {
@@ -98,7 +98,7 @@ impl Gathering<'_> {
 impl Renderer {
     pub(super) fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
         let tap = &mut self.outlets.beside(tap);
-        let at = At { position: self.position, n };
+        let at = SampleRange { position: self.position, n };
         let watched = tap.is_watching();
         // A tap is not shared: it is shown one contact after the other.
         let crew = self.crew.as_mut().filter(|_| !watched).and_then(|crew| {
@@ -106,7 +106,7 @@ impl Renderer {
             let shared_out = crew.send_contacts(at, &self.shared, voices, &mut self.seats, &self.channels);
             shared_out.then_some(crew)
         });
-        let terms = Terms { position: at.position, mode_level: self.governor.mode_level() };
+        let terms = RenderArgs { position: at.position, mode_level: self.governor.mode_level() };
         let mut gathering = Gathering {
             at,
             channels: &mut self.channels,
@@ -128,7 +128,7 @@ impl Renderer {
                 }
                 let seat = &mut self.seats[voice.surface];
                 let output = output(voice, gathering.channels, shared);
-                let stretch = Stretch { shared, output, position: at.position, n };
+                let stretch = Segment { shared, output, position: at.position, n };
                 let pressing = voice.render(stretch, seat, &mut self.scratch, tap);
                 gathering.add(index, voice, seat, pressing, &self.scratch.out);
             }
@@ -150,11 +150,11 @@ fn output<'a>(voice: &Voice, channels: &'a [HapticChannel], shared: &'a Shared) 
 }
 
 /// Place at which a contact rubs, and the direction along the body.
-fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> Spot {
+fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> StrikePoint {
     let place = place.zip(surface.frame).map(|(place, frame)| {
         let [along_u, along_v] = frame.axes();
         let direction = std::array::from_fn(|i| (u * along_u[i] + v * along_v[i]) as f32);
         StrikePlace { direction, ..place }
     });
-    Spot { place, position: surface.strike_position }
+    StrikePoint { place, position: surface.strike_position }
 }

@@ -5,7 +5,7 @@ use super::{PadSample, PathPoint};
 use crate::link::stats::Counts;
 use crate::link::tap::ContactRows;
 use asperity_dsp::hertz::FORCE_HISTORY;
-use asperity_dsp::micro_contact::Bend;
+use asperity_dsp::micro_contact::QuarticCorrection;
 use asperity_surface::height_field::MAX_BLOCK;
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use std::ops::Range;
 pub(crate) struct Scratch {
     pub(super) points: [PathPoint; MAX_BLOCK],
     pub(super) profile: Profile,
-    pub(super) bends: [[Bend; 2]; MAX_BLOCK],
+    pub(super) quartic_correction: [[QuarticCorrection; 2]; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
     /// Impulses of the alternating force behind those of the stretch before, N·s.
     pub(super) force_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
@@ -48,7 +48,7 @@ impl Scratch {
         Box::new(Self {
             points: [PathPoint::default(); MAX_BLOCK],
             profile: Profile::new(),
-            bends: [[[0.0; 4]; 2]; MAX_BLOCK],
+            quartic_correction: [[[0.0; 4]; 2]; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
             force_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
             shown: ContactRows::new(),

@@ -4,7 +4,7 @@ use super::profile::{Along, Profile};
 use super::skin::ContactSkin;
 use super::{PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
-use crate::audio::shared::{Shared, Stretch};
+use crate::audio::shared::{Segment, Shared};
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
 use crate::resource::surface::SurfaceSlot;
@@ -34,7 +34,7 @@ impl Voice {
         contact: ContactId,
         sample: &ContactSample,
         stamp: Stamp,
-        at: Stretch<'_>,
+        at: Segment<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
@@ -62,14 +62,14 @@ impl Voice {
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
             self.between.roughness = scratch.profile.surface.roughness[0];
-            self.look_between(shared, seat);
+            self.sample_between(shared, seat);
             let Profile { surface, rough, .. } = &mut scratch.profile;
             self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
             self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
         } else {
-            self.lead_in(at, seat, scratch);
+            self.preroll(at, seat, scratch);
         }
         // The high-pass starts settled, so that beginning gives no step.
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
@@ -83,37 +83,37 @@ impl Voice {
 
     /// A finger that is suddenly there has been sliding already: the pad is led along the straight
     /// line to where it appears, so that it moves with the surface from its first sample.
-    fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
-        let Stretch { shared, output, .. } = at;
+    fn preroll(&mut self, at: Segment<'_>, seat: &mut Seat, scratch: &mut Scratch) {
+        let Segment { shared, output, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
         self.between.roughness = scratch.profile.surface.roughness[MAX_BLOCK - 1];
-        self.look_between(shared, seat);
+        self.sample_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
         // It leaves the line where the ground is known a step before, there, and a step later.
-        self.lay_behind((steps + 1, step_s, ABOUT), at, seat, scratch);
+        self.extend_back((steps + 1, step_s, ABOUT), at, seat, scratch);
         let Profile { surface, rough, .. } = &mut scratch.profile;
         self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
-        let Scratch { bends, profile, .. } = &mut *scratch;
-        self.rolling.lead_in(&mut profile.surface, ABOUT);
-        self.between.ground(shared, &profile.short, ABOUT, bends);
+        let Scratch { quartic_correction, profile, .. } = &mut *scratch;
+        self.rolling.preroll(&mut profile.surface, ABOUT);
+        self.between.ground(shared, &profile.short, ABOUT, quartic_correction);
         let [before_m, here_m, later_m, ..] = profile.surface.height_m;
-        let given = self.pad.ride([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
+        let given = self.pad.start_sliding([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
         // The line ends a step before the first height of the ground.
         let steps = steps - 1 - given;
         let (mut left, mut row) = (steps, PadSample::default());
         while left > 0 {
             let count = left.min(MAX_BLOCK);
-            self.lay_behind((left, step_s, count), at, seat, scratch);
-            let Scratch { rows, bends, profile, .. } = &mut *scratch;
-            self.rolling.lead_in(&mut profile.surface, count);
+            self.extend_back((left, step_s, count), at, seat, scratch);
+            let Scratch { rows, quartic_correction, profile, .. } = &mut *scratch;
+            self.rolling.preroll(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            let ground = self.between.ground(shared, &profile.short, count, bends);
+            let ground = self.between.ground(shared, &profile.short, count, quartic_correction);
             self.pad.run(heights_m, forces_n, ground, &mut rows[..count]);
             row = rows[..count].last().copied().unwrap_or_default();
             left -= count;
             if left == 0 {
-                self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
+                self.pad.start_after(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
             }
         }
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;
@@ -122,16 +122,16 @@ impl Voice {
     }
 
     /// The profile under `count` points behind the contact, of which the first is `steps` behind.
-    fn lay_behind(
+    fn extend_back(
         &mut self,
         (steps, step_s, count): (usize, f64, usize),
-        at: Stretch<'_>,
+        at: Segment<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
         let Scratch { points, profile, .. } = scratch;
         let points = &mut points[..count];
-        self.path.lay_behind(steps, step_s, points);
+        self.path.extend_back(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
         let between = self.between.on_the_way(from_m);
@@ -140,9 +140,9 @@ impl Voice {
     }
 
     /// Rise, m/s, and bend, m/s², of the profile during the last [`TREND_S`].
-    fn trend(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
+    fn trend(&mut self, at: Segment<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
         let step_s = TREND_S / MAX_BLOCK as f64;
-        self.lay_behind((MAX_BLOCK, step_s, MAX_BLOCK), at, seat, scratch);
+        self.extend_back((MAX_BLOCK, step_s, MAX_BLOCK), at, seat, scratch);
         let [slope, bend] = parabola(&scratch.profile.surface.height_m);
         // The slope is that of the middle; the contact is half a trend later.
         let bend_m_s2 = bend / (step_s * step_s);
@@ -193,8 +193,8 @@ impl Voice {
     }
 
     /// Goes on as a path before it, as far as that has learned to know the game.
-    pub(crate) fn succeed(&mut self, path: &Trajectory) {
-        self.path.succeed(path);
+    pub(crate) fn inherit_rate(&mut self, path: &Trajectory) {
+        self.path.inherit_rate(path);
     }
 
     /// The force to render for a report, or none if the contact has left the surface. One report

@@ -167,7 +167,7 @@ impl Exciters {
     /// Takes the pulses of a stretch without their mean, N·s; false, and nothing written, where
     /// there are none.
     fn take_pulses(&mut self, by: &Excited<'_>, out: &mut [f64]) -> bool {
-        // At the steps of the absolute grid, so that it depends on no split into blocks.
+        // SampleRange the steps of the absolute grid, so that it depends on no split into blocks.
         if by.position.is_multiple_of(MAX_BLOCK as u64) && self.pulses_are_over(by.position) {
             self.pulse_mean = State::default();
         }

@@ -5,7 +5,7 @@ use super::profile::Along;
 use super::rolling::Rolling;
 use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
 use crate::audio::seat::Seat;
-use crate::audio::shared::{Shared, Stretch};
+use crate::audio::shared::{Segment, Shared};
 use crate::resource::area::{loudness, nestling};
 use crate::resource::rolled_over::RolledOver;
 use crate::resource::stiffness::stiffness_n_m;
@@ -15,7 +15,7 @@ use asperity_surface::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 impl Voice {
     /// Probe that presses on the touched body from a step of the absolute grid on, as stiff as
     /// ground and force make it, to a quarter of an octave; none while nothing presses.
-    pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
+    pub(super) fn pressing_at(&self, stretch: Segment<'_>, seat: &Seat) -> Option<Probe> {
         let force_n = self.path.last.normal_force_n;
         if !stretch.is_on_grid() || self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
             return None;
@@ -57,7 +57,7 @@ impl Voice {
     }
 
     /// Decides what of the ground is sampled between samples: as it begins, and on the grid.
-    pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
+    pub(super) fn sample_between(&mut self, shared: &Shared, seat: &mut Seat) {
         if self.path.is_in_body() || self.rolling.rolls() {
             return self.between.leave();
         }
@@ -91,8 +91,8 @@ impl Voice {
     }
 
     /// Falls asleep where nothing of it moves or sounds any more; called at the ends of grid cells.
-    pub(super) fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
-        let Stretch { output, position, n, .. } = stretch;
+    pub(super) fn fall_asleep_when_still(&mut self, stretch: Segment<'_>, scratch: &Scratch) {
+        let Segment { output, position, n, .. } = stretch;
         let row = PadSample { onset: None, ..scratch.rows[n - 1] };
         self.last_row = row;
         if self.asleep {

@@ -5,7 +5,7 @@ use super::PadSample;
 use crate::link::stats::Counts;
 use crate::resource::probe::PreparedProbe;
 use crate::resource::stiffness::{Ground, stiffness_n_m};
-use asperity_dsp::micro_contact::{ContactState, GroundBetween, MicroContact, Probe};
+use asperity_dsp::micro_contact::{ContactState, MicroContact, Probe, SubSampleProfile};
 
 /// A contact force so many times what presses is a blow: a heavy or stiff probe comes down from a
 /// crest with v √(k m), whatever presses it. Fingertips reach 13 on ordinary ribs.
@@ -13,7 +13,7 @@ const BLOW: f64 = 30.0;
 /// Less than this is no touch but a contact that fades, N.
 const LIGHTEST_N: f64 = 0.01;
 /// Contact force over what presses at which no contact appears: it would begin in a blow.
-const LEAD_IN_BLOW: f64 = 10.0;
+const PREROLL_BLOW: f64 = 10.0;
 
 /// The pad of one contact.
 pub(super) struct Pad {
@@ -54,7 +54,7 @@ impl Pad {
         if self.stiff_for != Some(now) {
             self.stiff_for = Some(now);
             let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &ground, force_n);
-            probe.ladder.set(&mut self.model, stiffness_n_m);
+            probe.stiffness_table.set(&mut self.model, stiffness_n_m);
         }
     }
 
@@ -77,15 +77,15 @@ impl Pad {
     /// Has been sliding along a line that rises by `rise_m_s`, finger and pad with it: set off from
     /// rest they would still swing when they are felt. The heights are those a sample before it
     /// leaves the line, there, and a sample later; returns how many after the middle it has got.
-    pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
-        self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
+    pub(super) fn start_sliding(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
+        self.state = self.model.sliding_along_a_line(heights_m, force_n, rise_m_s);
         self.model.latency_samples()
     }
 
     /// Appears after such a row, on ground of this height that rises by `rise_m_s` on the whole.
-    pub(super) fn appear(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
+    pub(super) fn start_after(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
         self.late_row = PadSample { onset: None, ..*row };
-        if self.state.resets() > 0 || row.contact_force_n > LEAD_IN_BLOW * force_n {
+        if self.state.resets() > 0 || row.contact_force_n > PREROLL_BLOW * force_n {
             // Ground that was never there cannot have thrown it.
             self.state = self.model.riding(height_m, force_n, rise_m_s);
         }
@@ -97,7 +97,7 @@ impl Pad {
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
-        ground: GroundBetween<'_>,
+        ground: SubSampleProfile<'_>,
         rows: &mut [PadSample],
     ) {
         self.model.run_over(&mut self.state, heights_m, forces_n, ground, rows);
@@ -115,7 +115,7 @@ impl Pad {
             rows.iter_mut().for_each(|row| std::mem::swap(row, &mut self.late_row));
         }
         if self.landing_m_s > 0.0 {
-            self.feel_no_air(rows);
+            self.mask_free_flight(rows);
         }
         let resets = self.state.resets();
         counts.resets = u64::from(resets.wrapping_sub(std::mem::replace(&mut self.resets_told, resets)));
@@ -132,7 +132,7 @@ impl Pad {
     }
 
     /// Nothing is felt of the way through the air: until it touches, a pad is at the surface.
-    fn feel_no_air(&mut self, rows: &mut [PadSample]) {
+    fn mask_free_flight(&mut self, rows: &mut [PadSample]) {
         for row in rows {
             if row.onset.is_some() || row.pad_m < row.height_m {
                 self.landing_m_s = 0.0;

@@ -102,8 +102,8 @@ impl Path {
     }
 
     /// Takes over the report rate of a path before it.
-    pub(super) fn succeed(&mut self, path: &Trajectory) {
-        self.trajectory.succeed(path);
+    pub(super) fn inherit_rate(&mut self, path: &Trajectory) {
+        self.trajectory.inherit_rate(path);
     }
 
     /// Presses from now on as at its last sample.
@@ -123,7 +123,7 @@ impl Path {
 
     /// The straight line that ends where the contact is: points a step of `step_s` apart, of which
     /// the first is `steps` before it.
-    pub(super) fn lay_behind(&self, steps: usize, step_s: f64, points: &mut [PathPoint]) {
+    pub(super) fn extend_back(&self, steps: usize, step_s: f64, points: &mut [PathPoint]) {
         let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last;
         for (i, point) in points.iter_mut().enumerate() {
             let before_s = (steps - i) as f64 * step_s;

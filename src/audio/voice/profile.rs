@@ -3,7 +3,7 @@
 
 use crate::audio::seat::{Noise, Seat};
 use crate::audio::shared::Shared;
-use crate::resource::overlay::{OnTheWay, Room, ShortWaves, TileCells};
+use crate::resource::overlay::{BetweenQuery, Room, ShortWaves, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_surface::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
@@ -17,7 +17,7 @@ pub(super) struct Along<'a> {
     /// Places in the body are known, [`Profile::at_m`].
     pub(super) in_body: bool,
     /// Short waves between samples too.
-    pub(super) between: Option<OnTheWay>,
+    pub(super) between: Option<BetweenQuery>,
 }
 
 /// The surface under one stretch of a path.
@@ -65,7 +65,7 @@ impl Profile {
         let n = points.len();
         let mut bounds_m = self.lay_out(along.shared, points);
         self.short.known = false;
-        if let Some(OnTheWay { from_m, .. }) = along.between {
+        if let Some(BetweenQuery { from_m, .. }) = along.between {
             // Looks lie between two places of the path, or the one before it.
             let [low_m, high_m] = bounds_m;
             bounds_m = [

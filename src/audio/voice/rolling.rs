@@ -21,7 +21,7 @@ const LAG: f64 = 0.8;
 pub(super) struct Rolling {
     /// Speed of slip and radius of what rolls, of the newest report; none while it slides.
     told: Option<(f64, Option<f64>)>,
-    /// Share of rolling at the last step of the grid, and at the next.
+    /// Task of rolling at the last step of the grid, and at the next.
     share: [f64; 2],
     /// Roughness of the ground under its last sample.
     roughness: f64,
@@ -118,7 +118,7 @@ impl Rolling {
     }
 
     /// Softens `n` heights that lie behind a contact that appears.
-    pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
+    pub(super) fn preroll(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
             self.run((0, MAX_BLOCK as u64), surface, n, true);
         }

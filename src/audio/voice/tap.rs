@@ -3,7 +3,7 @@
 use super::Voice;
 use super::block::Scratch;
 use crate::audio::seat::Seat;
-use crate::audio::shared::Stretch;
+use crate::audio::shared::Segment;
 use crate::link::tap::Tap;
 use crate::model::event::ChannelId;
 use crate::resource::tip_force::Ground;
@@ -14,13 +14,13 @@ impl Voice {
     /// `row_latency` samples back, so the path's points are delayed by as much.
     pub(super) fn show<T: Tap>(
         &mut self,
-        stretch: Stretch<'_>,
+        stretch: Segment<'_>,
         seat: &Seat,
         scratch: &mut Scratch,
         tap: &mut T,
     ) {
         let Some(slot) = seat.current().filter(|_| tap.is_watching() && !self.left_behind) else { return };
-        let Stretch { shared, position, n, .. } = stretch;
+        let Segment { shared, position, n, .. } = stretch;
         let Scratch { points, rows, profile, shown, out, .. } = scratch;
         let latency = shared.row_latency;
         let (mut count, mut first_sample) = (0, 0);

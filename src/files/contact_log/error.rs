@@ -128,11 +128,13 @@ impl LogError {
     /// log.
     #[must_use]
     pub fn in_text(self, text: &str, name: &str) -> FileError {
-        let Self::Event { number, problem, .. } = self else { return FileError::told(self).within(name) };
+        let Self::Event { number, problem, .. } = self else {
+            return FileError::from_error(self).within(name);
+        };
         let is_event = |line: &&str| line.contains("\"event\"");
         let lines = text.lines().enumerate().filter(|(_, line)| is_event(line));
         let line = lines.map(|(index, _)| index + 1).nth(number - 1).unwrap_or(number);
-        FileError::told(problem).within(format!("{name}:{line}"))
+        FileError::from_error(problem).within(format!("{name}:{line}"))
     }
 }
 

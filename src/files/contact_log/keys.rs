@@ -1,5 +1,5 @@
 //! Keys of a line of the contact log: which each event needs and takes, and what they hold.
-//! docs/formats.md has a table for each.
+//! docs/formats/log.md has a table for each.
 
 use super::{LogError, VERSION};
 use crate::files::nearest::nearest;
@@ -365,7 +365,7 @@ impl<'de> Deserialize<'de> for Object {
 mod tests {
     use super::*;
 
-    const FORMATS: &str = include_str!("../../../docs/formats.md");
+    const FORMATS: &str = include_str!("../../../docs/formats/log.md");
 
     /// The keys of a table of the document, and those that are needed.
     fn table(begins: &str) -> (Vec<&'static str>, Vec<&'static str>) {

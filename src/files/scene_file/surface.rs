@@ -136,7 +136,7 @@ fn read_frame(fields: &mut Fields) -> Result<Option<SurfaceFrame>, FileError> {
     let v_axis = fields.vector(&frame::V_AXIS)?.unwrap_or([0.0, 1.0, 0.0]);
     let place = fields.inner("");
     fields.finish()?;
-    let told = |error| FileError::told(error).within(place.trim_end_matches([':', ' ', '.']));
+    let told = |error| FileError::from_error(error).within(place.trim_end_matches([':', ' ', '.']));
     SurfaceFrame::new(origin_m, u_axis, v_axis).map(Some).map_err(told)
 }
 

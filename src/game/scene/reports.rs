@@ -13,7 +13,7 @@ use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::LONGEST_CONTACT_S;
-use crate::resource::spot::Spot;
+use crate::resource::strike_point::StrikePoint;
 use crate::resource::stroking::elastic;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
@@ -293,7 +293,7 @@ impl Scene {
             stamp,
             epoch: self.clock.epoch(),
             body: impact.body.index(),
-            spot: Spot { place: self.struck(impact), position: impact.position },
+            spot: StrikePoint { place: self.struck(impact), position: impact.position },
             other,
             holder: impact.holder.map(BodyId::index),
             felt,
@@ -309,7 +309,7 @@ impl Scene {
         self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
-    /// Place of an impact on a body that has shapes.
+    /// Placement of an impact on a body that has shapes.
     fn struck(&self, impact: &Impact) -> Option<StrikePlace> {
         let field = self.bodies.get(impact.body.0)?.field.as_ref()?;
         field.place(impact.at_m?, impact.direction)

@@ -3,7 +3,7 @@
 use super::spin::Spin;
 use super::{Scene, Touched};
 use crate::game::tip::TipSurface;
-use crate::model::contact_sample::Place;
+use crate::model::contact_sample::Placement;
 use crate::model::error::{AddError, Refusal};
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::frame::SurfaceFrame;
@@ -23,7 +23,7 @@ impl Scene {
         point_m: impl Into<mint::Vector3<f64>>,
     ) -> Result<Option<[f64; 2]>, AddError> {
         let known = self.known_surface(id)?;
-        let Place { frame, size_m, .. } = known.place;
+        let Placement { frame, size_m, .. } = known.place;
         Ok(frame.map(|frame| frame.uv(point_m, size_m)))
     }
 
@@ -34,7 +34,7 @@ impl Scene {
     /// When a surface is not in this scene, or has no frame.
     pub fn tip_surfaces(&self, ids: &[SurfaceId]) -> Result<Vec<TipSurface>, AddError> {
         let rectangle = |id: &SurfaceId| {
-            let Place { frame, size_m, .. } = self.known_surface(*id)?.place;
+            let Placement { frame, size_m, .. } = self.known_surface(*id)?.place;
             Ok(TipSurface { frame: frame.ok_or(AddError::NoFrame)?, size_m })
         };
         ids.iter().map(rectangle).collect()
@@ -59,7 +59,7 @@ impl Scene {
             return Ok(sample);
         }
         let known = self.touched.get(&contact).and_then(|touched| self.surfaces.get(touched.surface.0));
-        let nowhere = Place { frame: None, size_m: [1.0; 2], is_soft: false };
+        let nowhere = Placement { frame: None, size_m: [1.0; 2], is_soft: false };
         sample.on(known.map_or(&nowhere, |known| &known.place))
     }
 
@@ -100,7 +100,7 @@ impl Scene {
         event
     }
 
-    /// Place of a contact on a body that has shapes: its own place counts before its surface's
+    /// Placement of a contact on a body that has shapes: its own place counts before its surface's
     /// frame; none where both are missing.
     pub(super) fn touched(&self, event: &ContactEvent) -> Option<StrikePlace> {
         let (ContactEvent::Begin { contact, sample, .. } | ContactEvent::Moved { contact, sample, .. }) =
@@ -111,7 +111,7 @@ impl Scene {
         let touched = self.touched.get(contact)?;
         let known = self.surfaces.get(touched.surface.0)?;
         let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
-        let Place { frame, size_m, .. } = &known.place;
+        let Placement { frame, size_m, .. } = &known.place;
         let uv = touched.spin.uv().unwrap_or(sample.uv);
         let in_frame = || Some(frame.as_ref()?.point_m(uv, *size_m));
         // A bow stands on what its frame says, which at the edge of a sheet is no part of the

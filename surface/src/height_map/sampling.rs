@@ -15,7 +15,7 @@ impl HeightMap {
         let working = &mut out.working;
         let (n, of_all) = (path.len(), (widest_m(path.footprint_m), bounds_m));
         working.places.forget();
-        let heights = self.ridden();
+        let heights = self.dilated();
         if path.slopes {
             heights.sample_block::<true>(path, of_all, working);
             let slopes = working.samples.slope_u.iter().zip(&working.samples.slope_v).take(n);

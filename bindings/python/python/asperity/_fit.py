@@ -50,7 +50,7 @@ class Fit:
         return f"Fit({self.source!r}, {len(self.modes)} modes, {self.snr_from_onset_db:.1f} dB from the onset)"
 
     def json(self) -> str:
-        """The text of its modes file, as docs/formats.md has it."""
+        """The text of its modes file, as docs/formats/modes.md has it."""
         modes: list[dict[str, Any]] = []
         for mode in self.modes:
             std = {key: mode[name] for key, name in zip(_MODE[:4], _MODE[4:8], strict=True)}

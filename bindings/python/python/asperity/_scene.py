@@ -28,7 +28,7 @@ class Body:
 
     Body(modes="tile.modes.json") rings as a modes file says, `Body.stock("plate", 0.14, "ceramic")` as a stock shape does,
     `asperity.fit(...).body()` as a recording; Body() is silent. material: a preset of `names_of("material")` or a table of constants.
-    Further keys are those of [[body]] in docs/formats.md. Raises FileNotFoundError where the modes file is missing, ValueError where the
+    Further keys are those of [[body]] in docs/formats/scene.md. Raises FileNotFoundError where the modes file is missing, ValueError where the
     material is none.
     """
 
@@ -162,7 +162,7 @@ class Surface(_Surface):
 
     heights: float array (rows, columns) in metres, top row first; or uint8, uint16 or a picture's path, with `relief_m`, the metres of
     white over black. extent: (width, height) in metres that it covers, or the width alone. roughness: R from 0 to 1, a number, an array
-    or a path. Further keys (wrap, micro_relief_m, excitation, friction, compliance_m_n, ...) are those of [[surface]] in docs/formats.md.
+    or a path. Further keys (wrap, micro_relief_m, excitation, friction, compliance_m_n, ...) are those of [[surface]] in docs/formats/scene.md.
 
     Raises ValueError where an array is not finite, has other axes, or holds greys without `relief_m`, and FileNotFoundError where a
     picture is missing.
@@ -187,7 +187,7 @@ class Surface(_Surface):
 class Solid(_Surface):
     """A surface cut from solid noise: a material of `names_of("solid")`.
 
-    parameters: what differs from the preset (amplitude_m, octaves, flow_m_s, ... of docs/formats.md). The rest is as in `Surface`.
+    parameters: what differs from the preset (amplitude_m, octaves, flow_m_s, ... of docs/formats/scene.md). The rest is as in `Surface`.
     """
 
     def __init__(
@@ -209,7 +209,7 @@ class Solid(_Surface):
 class Brownian(_Surface):
     """A fractional Brownian relief of Hurst exponent `hurst` (0 to 1) and `rms_m` metres rms.
 
-    parameters: seed, cells, graph, force of docs/formats.md. The rest is as in `Surface`.
+    parameters: seed, cells, graph, force of docs/formats/scene.md. The rest is as in `Surface`.
     """
 
     def __init__(
@@ -250,7 +250,7 @@ class Lattice(_Surface):
 
 
 class Sand(_Surface):
-    """A bed of sand, which gives way. parameters: cells, depth_m, talus_deg, ... of docs/formats.md."""
+    """A bed of sand, which gives way. parameters: cells, depth_m, talus_deg, ... of docs/formats/scene.md."""
 
     def __init__(
         self,

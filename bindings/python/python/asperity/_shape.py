@@ -39,7 +39,7 @@ class Shape:
         return f"Shape({len(self.modes)} modes from {low:.1f} to {high:.1f} Hz, {1e3 * self.mass_kg:.1f} g)"
 
     def json(self) -> str:
-        """The text of its modes file with its shapes, as docs/formats.md has it."""
+        """The text of its modes file with its shapes, as docs/formats/modes.md has it."""
         return self.text
 
     def save(self, path: str | os.PathLike[str]) -> None:

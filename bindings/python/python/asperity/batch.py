@@ -1,6 +1,6 @@
 """Data sets of rendered touch: shards as pure functions of a specification and an index.
 
-The specification and what is made of it are those of `asperity batch` (docs/formats.md); so are the bytes. Shards are made by this
+The specification and what is made of it are those of `asperity batch` (docs/formats/data-sets.md); so are the bytes. Shards are made by this
 package in whatever process calls it; Dask and Ray only say which process that is:
 
 >>> from asperity import batch                                             # doctest: +SKIP

@@ -1,6 +1,6 @@
 """Contacts as structured arrays, and as the JSON Lines of a contact log.
 
-A row is an event, its fields the keys of the log (docs/formats.md): what is missing is NaN, -1 or "".
+A row is an event, its fields the keys of the log (docs/formats/log.md): what is missing is NaN, -1 or "".
 
 >>> from asperity import contacts
 >>> rows = contacts.stroke(speed=0.1, force=0.5, duration=0.1, extent=(0.14, 0.14))

@@ -44,7 +44,7 @@ impl Document {
     /// When it is no TOML.
     pub fn parse(text: &str, path: &Path) -> Result<Self, CliError> {
         let inner = text.parse().map_err(|error: toml_edit::TomlError| {
-            CliError::file(path, error.message(), "write TOML, as docs/formats.md shows")
+            CliError::file(path, error.message(), "write TOML, as docs/formats/scene.md shows")
         })?;
         Ok(Self { inner })
     }
@@ -69,7 +69,7 @@ impl Document {
         let names: Vec<&str> = steps(path).filter(|step| step.parse::<usize>().is_err()).collect();
         let at = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
         let unknown =
-            || CliError::new(&at, "is no number of a scene file", "see docs/formats.md, Every number");
+            || CliError::new(&at, "is no number of a scene file", "see docs/formats/scene.md, Every number");
         let parameter =
             table_of(&names).and_then(|table| parameters::find(table, key)).ok_or_else(unknown)?;
         if !numbers.is_empty() && numbers.len() != parameter.components {

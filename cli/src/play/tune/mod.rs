@@ -147,15 +147,15 @@ impl Tuned<'_> {
 
     /// Lines of a contact log from a finger on the page, by its clock.
     fn touch(&mut self, lines: &str) -> Result<(), CliError> {
-        let log = ContactLog::parse(lines, "touch").map_err(CliError::told)?;
+        let log = ContactLog::parse(lines, "touch").map_err(CliError::from_error)?;
         let now_s = self.position_s();
         for line in &log.lines {
-            let event: ContactEvent = line.event.resolve(&self.names).map_err(CliError::told)?;
+            let event: ContactEvent = line.event.resolve(&self.names).map_err(CliError::from_error)?;
             let fresh = now_s + LEAD_S - line.t;
             let offset_s = self.touch_offset_s.filter(|known| (known - fresh).abs() < 0.2).unwrap_or(fresh);
             self.touch_offset_s = Some(offset_s);
             let time_s = (line.t + offset_s).max(now_s);
-            self.report(time_s, event).map_err(CliError::told)?;
+            self.report(time_s, event).map_err(CliError::from_error)?;
         }
         Ok(())
     }
@@ -236,7 +236,7 @@ struct Sounding {
 #[cfg(feature = "device")]
 impl Sounding {
     fn start(renderer: Renderer) -> Result<Self, CliError> {
-        device::play_on(renderer, &DeviceOptions::default()).map(Self).map_err(CliError::told)
+        device::play_on(renderer, &DeviceOptions::default()).map(Self).map_err(CliError::from_error)
     }
 
     fn heard(&self) -> String {

@@ -1,8 +1,8 @@
 //! A surface from above, and the way of what slides over it.
 
 use super::{Ground, Take, drawn};
-use crate::plot::{Axis, Layer, Panel, Picture, Series, colour};
 use asperity::Wrap;
+use asperity_plot::{Axis, Layer, Panel, Picture, Series, colour};
 
 /// The finger's way over the surface, seen from above; v grows downwards, as in the image.
 pub(super) fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {

@@ -1,7 +1,7 @@
-//! What is felt and what is heard: waves and spectra.
+//! Outputs, felt and heard: waves and spectra.
 
 use super::{HapticChannel, Take, impact_rules, time};
-use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
+use asperity_plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
 
 pub(super) fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &HapticChannel<'_>) {
     let number = if take.haptic.len() > 1 { format!(" {index}") } else { String::new() };
@@ -62,7 +62,7 @@ pub(super) fn levels_panel(take: &Take<'_>) -> Panel {
         .into_iter()
         .chain([("heard", palette::AUDIO, take.audio)]);
     for (label, colour, samples) in curves {
-        let bands = crate::plot::third_octaves(samples, take.sample_rate_hz);
+        let bands = asperity_plot::third_octaves(samples, take.sample_rate_hz);
         let top = bands.iter().map(|band| band[1]).fold(f64::NEG_INFINITY, f64::max);
         if top.is_finite() {
             let points = bands.iter().map(|[hz, db]| [*hz, db - top]).collect();

@@ -3,7 +3,7 @@
 use super::ground::ground_panel;
 use super::outputs::levels_panel;
 use super::{Take, drawn};
-use crate::plot::{Axis, Layer, Panel, Series, palette};
+use asperity_plot::{Axis, Layer, Panel, Series, palette};
 
 /// Length of the enlarged instant, s.
 const ZOOM_S: f64 = 0.03;

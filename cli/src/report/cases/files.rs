@@ -137,7 +137,7 @@ fn log(case: &Case) -> ContactLog {
 pub fn files(case: &Case, seed: u64, excitation: Option<&str>) -> Result<Vec<(String, Vec<u8>)>, CliError> {
     let name = case.name;
     let mut lines = Vec::new();
-    log(case).write(&mut lines).map_err(CliError::told)?;
+    log(case).write(&mut lines).map_err(CliError::from_error)?;
     let mut files = vec![
         (MODES.to_owned(), plate().to_json().into_bytes()),
         (format!("{name}.jsonl"), lines),

@@ -149,7 +149,7 @@ impl Fit {
         let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
         let least = strongest * 10.0_f64.powf(0.1 * options.least_level_db);
         partials.retain(|p| p.energy(count) >= least);
-        warnings.extend(suspicion::take_what_does_not_ring(&mut partials, count, rate));
+        warnings.extend(suspicion::remove_undamped(&mut partials, count, rate));
         if !analysis.explained {
             let left: f64 = analysis.residual.iter().map(|x| x * x).sum();
             warnings.extend(take_rumble(&mut partials, count, left, rate));

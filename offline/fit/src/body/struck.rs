@@ -37,7 +37,7 @@ pub fn lead(partials: &[Partial], samples: &[f64], onset: usize) -> usize {
 mod tests {
     use super::*;
     use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
-    use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, ReferenceMode, ReferenceState};
+    use asperity_dsp::modal_bank::{GroupOptions, OnsetCorrection, ReferenceMode, ReferenceState};
     use asperity_dsp::mode::Mode;
 
     #[test]
@@ -54,7 +54,7 @@ mod tests {
         let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: 0.0 };
         let (mut ring, mut early) = ([0.0; 64], [0.0_f32; 64]);
         pulse.deposit(&mut ring, 4, 0.0, rate);
-        FirstSamples::new(modes, rate).unwrap().deposit(&pulse, &mut early, 4, 0.0, rate);
+        OnsetCorrection::new(modes, rate).unwrap().deposit(&pulse, &mut early, 4, 0.0, rate);
         let mut impulses = [0.0_f32; 30];
         take(&mut ring, 0, &mut impulses);
         let mut played: Vec<f64> = early[..30].iter().map(|&x| f64::from(x)).collect();

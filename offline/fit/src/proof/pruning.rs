@@ -106,7 +106,7 @@ pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize, leas
 ///
 /// `kept` remembers the poles that were missed: while they stay where they are, they are not tried
 /// again.
-pub fn prune_missed_by_nobody(
+pub fn prune_redundant(
     signal: &[f64],
     partials: &mut Vec<Partial>,
     noise: &NoiseFloor,

@@ -29,7 +29,7 @@ const CHECKED: usize = 8;
 
 /// Removes tones of the mains and other faint ones that do not decay within `count` samples, and
 /// lets the rest ring for at most twenty times these.
-pub fn take_what_does_not_ring(partials: &mut Vec<Partial>, count: usize, rate_hz: f64) -> Vec<Warning> {
+pub fn remove_undamped(partials: &mut Vec<Partial>, count: usize, rate_hz: f64) -> Vec<Warning> {
     let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
     let loudest = partials.iter().map(|p| p.c.norm()).fold(0.0, f64::max);
     let hz = |p: &Partial| p.omega * rate_hz / (2.0 * PI);
@@ -57,9 +57,9 @@ pub fn take_what_does_not_ring(partials: &mut Vec<Partial>, count: usize, rate_h
     });
     let [undamped, steady, hum] = tones;
     [
-        undamped.told(|count, frequency_hz| Warning::Undamped { count, frequency_hz }),
-        steady.told(|count, frequency_hz| Warning::Steady { count, frequency_hz }),
-        hum.told(|count, frequency_hz| Warning::Hum { count, frequency_hz }),
+        undamped.to_warning(|count, frequency_hz| Warning::Undamped { count, frequency_hz }),
+        steady.to_warning(|count, frequency_hz| Warning::Steady { count, frequency_hz }),
+        hum.to_warning(|count, frequency_hz| Warning::Hum { count, frequency_hz }),
     ]
     .into_iter()
     .flatten()
@@ -82,7 +82,7 @@ impl Group {
         self.count += 1;
     }
 
-    fn told(&self, warning: impl Fn(usize, f64) -> Warning) -> Option<Warning> {
+    fn to_warning(&self, warning: impl Fn(usize, f64) -> Warning) -> Option<Warning> {
         (self.count > 0).then(|| warning(self.count, self.frequency_hz))
     }
 }
@@ -121,9 +121,9 @@ pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_h
         }
     }
     let left_db = 10.0 * crooked.most.log10();
-    let cancelling = cancelling.told(|count, frequency_hz| Warning::Cancelling { count, frequency_hz });
+    let cancelling = cancelling.to_warning(|count, frequency_hz| Warning::Cancelling { count, frequency_hz });
     let crooked =
-        crooked.told(|count, frequency_hz| Warning::NotExponential { count, frequency_hz, left_db });
+        crooked.to_warning(|count, frequency_hz| Warning::NotExponential { count, frequency_hz, left_db });
     cancelling.into_iter().chain(crooked).collect()
 }
 
@@ -159,7 +159,7 @@ mod tests {
         };
         let body = partial(900.0, 100.0, 1.0);
         let mut partials = vec![body, partial(50.01, 0.001, 0.05), partial(149.98, 0.01, 0.01)];
-        let warnings = take_what_does_not_ring(&mut partials, 88_200, 44_100.0);
+        let warnings = remove_undamped(&mut partials, 88_200, 44_100.0);
         assert_eq!(partials, [body]);
         let [Warning::Hum { count: 2, frequency_hz }] = warnings[..] else { panic!("{warnings:?}") };
         assert!((frequency_hz - 50.01).abs() < 1e-6, "{frequency_hz}");

@@ -16,7 +16,7 @@
 //! 4. Proof once more where the noise is steep over frequency.
 
 use crate::noise::noise_floor::NoiseFloor;
-use crate::proof::pruning::{prune, prune_missed_by_nobody, threshold};
+use crate::proof::pruning::{prune, prune_redundant, threshold};
 use crate::proof::ringing::{anything_rings, is_steep_noise, standing_out};
 use crate::proof::suspicion::energy_spectrum;
 use crate::search::candidates::{SPAN_NEPERS, Search};
@@ -241,7 +241,7 @@ impl Work<'_> {
     /// Removes what the whole segment does not miss; says how many.
     fn prune_proven(&mut self) -> usize {
         let (noise, bounds) = (&self.noise, &self.limits.bounds);
-        prune_missed_by_nobody(self.segment, &mut self.partials, noise, bounds, &mut self.missed)
+        prune_redundant(self.segment, &mut self.partials, noise, bounds, &mut self.missed)
     }
 
     /// The noise as the residual shows it now.
@@ -294,7 +294,7 @@ impl Work<'_> {
         while if start > 0 {
             prune(&mut active, &self.noise, target.len(), threshold(target.len()))
         } else {
-            prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds, &mut self.missed)
+            prune_redundant(&target, &mut active, &self.noise, &bounds, &mut self.missed)
         } > 0
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);

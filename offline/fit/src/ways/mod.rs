@@ -10,7 +10,7 @@
 //! backwards. So no contact is believed without proof:
 //!
 //! 1. From the onset on, modes leave more than noise, or a few of them are only the push in
-//!    disguise: over when it is, or as fast as any may be ([`disguised`]).
+//!    disguise: over when it is, or as fast as any may be ([`is_contact_artifact`]).
 //! 2. From some proposed end of it on ([`crate::ways::contact`]) modes leave no more than noise.
 //! 3. They are fewer, by more than those that such a late beginning cannot see ([`saves`]).
 //! 4. A fit from the onset on leaves more of the sound, or 20 dB more of what follows the push; or
@@ -63,8 +63,8 @@ const MODES_OF_A_PUSH: usize = 80;
 /// A mode this part of as loud as any may be cancels others, as those do that stand for a push.
 /// Where there are more modes than that and fewer giants, it is a recording of many modes, and
 /// another fit would take as long.
-const GIANT: f64 = 0.2;
-const GIANTS: usize = 5;
+const LARGE_MODE: f64 = 0.2;
+const LARGE_MODES: usize = 5;
 /// Modes that leave so many times as much of what follows a push are not the body's: 20 dB.
 const BY_FAR: f64 = 100.0;
 /// Modes after a push that leave this little of what follows it are right, and the more that a fit
@@ -95,17 +95,17 @@ impl Sound<'_> {
         let whole = analysed_as_sum(self.samples, &limits, progress);
         // A sum of more modes than may be kept is none of those.
         let right = whole.explained && !whole.capped;
-        if whole.explained && !self.disguised(&whole, self.proposed()[0]) {
-            return (0, if right { whole } else { self.nearer(whole, &limits, progress) });
+        if whole.explained && !self.is_contact_artifact(&whole, self.proposed()[0]) {
+            return (0, if right { whole } else { self.better_fit(whole, &limits, progress) });
         }
         if let Some(pushed) = self.pushed(&whole, progress) {
             // Of two that leave noise, fewer modes are the body's where the noise is low enough to
             // tell.
             let proven = right && self.fine(&pushed);
-            let struck = if right { whole } else { self.nearer(whole, &limits, progress) };
+            let struck = if right { whole } else { self.better_fit(whole, &limits, progress) };
             return if proven || self.worse_from_the_onset(&struck, &pushed) { pushed } else { (0, struck) };
         }
-        (0, if right { whole } else { self.nearer(whole, &limits, progress) })
+        (0, if right { whole } else { self.better_fit(whole, &limits, progress) })
     }
 
     /// Is true of a push whose modes leave so little of what follows it that those it saves are its
@@ -124,7 +124,7 @@ impl Sound<'_> {
 
     /// Better one of `whole` and a fit from the tail, neither of which is right: the one that
     /// leaves less.
-    fn nearer(&self, whole: Analysis, limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
+    fn better_fit(&self, whole: Analysis, limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
         let staged = analyse_from_the_tail(self.samples, limits, progress);
         let left = |analysis: &Analysis| energy(&analysis.residual);
         let allowed = match (whole.explained, whole.capped) {
@@ -162,7 +162,7 @@ impl Sound<'_> {
     }
 
     /// Tests whether modes of a fit from the onset may be a push of `contact` samples in disguise.
-    fn disguised(&self, whole: &Analysis, contact: usize) -> bool {
+    fn is_contact_artifact(&self, whole: &Analysis, contact: usize) -> bool {
         let fastest = FASTEST * self.options.fastest_decay_per_s / self.recording.sample_rate_hz;
         let over = whole.partials.iter().filter(|p| p.delta * contact as f64 > OVER_NEPERS).count();
         let at_the_bound = whole.partials.iter().filter(|p| p.delta > fastest).count();
@@ -185,9 +185,9 @@ impl Sound<'_> {
         };
         let mut contacts = self.proposed().to_vec();
         contacts.retain(|&contact| contact > 0);
-        let giant = GIANT * self.limits(0).bounds.amplitude_high;
+        let giant = LARGE_MODE * self.limits(0).bounds.amplitude_high;
         let giants = whole.partials.iter().filter(|p| p.c.norm() > giant).count();
-        if whole.partials.len() > MODES_OF_A_PUSH && giants < GIANTS {
+        if whole.partials.len() > MODES_OF_A_PUSH && giants < LARGE_MODES {
             return None;
         }
         if whole.capped {

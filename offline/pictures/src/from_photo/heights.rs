@@ -98,7 +98,7 @@ pub(super) fn heights_of(
     };
     if options.bright_is_deep {
         found.shape.height_px = found.shape.height_px.map(|z| -z);
-        found.sign = Sign::told(true);
+        found.sign = Sign::given(true);
     }
     Ok(found)
 }
@@ -149,7 +149,7 @@ fn by_shading(
 ) -> Result<Found, DesignError> {
     let mut shape = shape_by(method, linear, light, progress)?;
     shape.height_px = without_streaks(&shape.height_px, light);
-    let sign = if told { Sign::told(false) } else { Sign::of_found_light() };
+    let sign = if told { Sign::given(false) } else { Sign::of_found_light() };
     Ok(Found { shape, sign, light_was_found, fallback: None })
 }
 

@@ -42,7 +42,7 @@ pub struct Sign {
 
 impl Sign {
     /// Told by the user.
-    pub(crate) const fn told(bright_is_deep: bool) -> Self {
+    pub(crate) const fn given(bright_is_deep: bool) -> Self {
         Self { bright_is_deep, confidence: 1.0 }
     }
 

@@ -20,7 +20,7 @@ const LEVEL: f64 = 15.0;
 /// Exponents of the two gammas that are undone: of a map that was darkened (sRGB taken for light)
 /// and of one that was brightened.
 const UNDONE: [f64; 2] = [1.0 / 2.2, 2.2];
-/// What a map that went through a gamma should have been.
+/// Remedy for a map that went through a gamma.
 const THROUGH_GAMMA: &str = "normals as numbers, where a flat place has red and green of half: this map was saved through a gamma (sRGB); undo that first (in Blender: Non-Color)";
 /// Mean of a channel that can be a map's blue.
 const LEAST_BLUE: f64 = 0.65;

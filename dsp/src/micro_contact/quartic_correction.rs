@@ -1,4 +1,4 @@
-//! Bends of a profile between two samples beside the cubic through them, where it is known midway
+//! QuarticCorrections of a profile between two samples beside the cubic through them, where it is known midway
 //! too, or at every quarter.
 //!
 //! ```text
@@ -40,27 +40,27 @@ use fearless_simd::f64x4;
 use fearless_simd::prelude::*;
 
 /// c₁ … c₄ of the polynomial over a sample beyond the cubic's, m.
-pub type Bend = [f64; 4];
+pub type QuarticCorrection = [f64; 4];
 
 /// Ground between samples; entry n belongs to the sample that ends at height n − 1.
 #[derive(Debug, Clone, Copy)]
-pub enum GroundBetween<'a> {
+pub enum SubSampleProfile<'a> {
     /// Nothing: it is the cubic.
     AtSamples,
     /// Its heights midway: a bend each.
-    Midway(&'a [Bend]),
+    Midway(&'a [QuarticCorrection]),
     /// Its heights at every quarter: a bend for each half, the second seen from midway.
-    Quarters(&'a [[Bend; 2]]),
+    Quarters(&'a [[QuarticCorrection; 2]]),
 }
 
-impl<'a> GroundBetween<'a> {
+impl<'a> SubSampleProfile<'a> {
     /// The first so many samples, and the rest.
     #[inline(always)]
     pub(super) fn split_at(self, count: usize) -> (Self, Self) {
         match self {
             Self::AtSamples => (self, self),
-            Self::Midway(bends) => {
-                let (first, rest) = bends.split_at(count.min(bends.len()));
+            Self::Midway(quartic_correction) => {
+                let (first, rest) = quartic_correction.split_at(count.min(quartic_correction.len()));
                 (Self::Midway(first), Self::Midway(rest))
             }
             Self::Quarters(halves) => {
@@ -74,16 +74,18 @@ impl<'a> GroundBetween<'a> {
     pub(super) fn is_sound(self, count: usize) -> bool {
         match self {
             Self::AtSamples => true,
-            Self::Midway(bends) => bends.len() == count && are_believed(bends),
-            Self::Quarters(halves) => halves.len() == count && are_believed(halves.as_flattened()),
+            Self::Midway(quartic_correction) => {
+                quartic_correction.len() == count && are_valid(quartic_correction)
+            }
+            Self::Quarters(halves) => halves.len() == count && are_valid(halves.as_flattened()),
         }
     }
 }
 
 /// Tests whether all of them can be.
 #[inline(always)]
-pub(super) fn are_believed(bends: &[Bend]) -> bool {
-    bends.as_flattened().iter().fold(true, |good, c| good & (c.abs() <= MAX_HEIGHT_M))
+pub(super) fn are_valid(quartic_correction: &[QuarticCorrection]) -> bool {
+    quartic_correction.as_flattened().iter().fold(true, |good, c| good & (c.abs() <= MAX_HEIGHT_M))
 }
 
 /// Samples that have to be known before the first bend.
@@ -116,7 +118,7 @@ impl Row {
 
 /// The last heights at samples and between them, of which bends come.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bends {
+pub struct QuarticCorrections {
     /// At the last three samples, oldest first, m.
     at_m: [f64; KNOWN],
     /// Midway to the last two, m.
@@ -128,26 +130,32 @@ pub struct Bends {
     known: usize,
 }
 
-impl Bends {
+impl QuarticCorrections {
     /// Takes heights at samples and midway from the sample before each; the bends that end at the
     /// sample before each, zero where too little is known yet. All slices are equally long.
-    pub fn midway(&mut self, level: Level, at_m: &[f64], midway_m: &[f64], bends: &mut [Bend]) {
-        let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(bends.chunks_mut(CHUNK));
-        for ((at_m, midway_m), bends) in all {
+    pub fn midway(
+        &mut self,
+        level: Level,
+        at_m: &[f64],
+        midway_m: &[f64],
+        quartic_correction: &mut [QuarticCorrection],
+    ) {
+        let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(quartic_correction.chunks_mut(CHUNK));
+        for ((at_m, midway_m), quartic_correction) in all {
             let rows = (Row::new(&mut self.at_m, at_m), Row::new(&mut self.midway_m, midway_m));
             at_level!(level.at_most_256_bits(), s => {
-                for (k, bends) in bends.chunks_mut(WIDE).enumerate() {
+                for (k, quartic_correction) in quartic_correction.chunks_mut(WIDE).enumerate() {
                     let turned = s.transpose(midway(s, &rows, WIDE * k));
-                    for (bend, turned) in bends.iter_mut().zip(turned) {
+                    for (bend, turned) in quartic_correction.iter_mut().zip(turned) {
                         *bend = turned.to_array();
                     }
                 }
             });
-            self.begin(bends);
+            self.begin(quartic_correction);
         }
     }
 
-    /// Bends with heights at the quarters: one in the first half of the way from the sample before,
+    /// QuarticCorrections with heights at the quarters: one in the first half of the way from the sample before,
     /// one in the second.
     pub fn quarters(
         &mut self,
@@ -155,31 +163,35 @@ impl Bends {
         at_m: &[f64],
         midway_m: &[f64],
         [first_m, second_m]: [&[f64]; 2],
-        bends: &mut [[Bend; 2]],
+        quartic_correction: &mut [[QuarticCorrection; 2]],
     ) {
         let between = first_m.chunks(CHUNK).zip(second_m.chunks(CHUNK));
-        let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(between).zip(bends.chunks_mut(CHUNK));
-        for (((at_m, midway_m), (first_m, second_m)), bends) in all {
+        let all = at_m
+            .chunks(CHUNK)
+            .zip(midway_m.chunks(CHUNK))
+            .zip(between)
+            .zip(quartic_correction.chunks_mut(CHUNK));
+        for (((at_m, midway_m), (first_m, second_m)), quartic_correction) in all {
             let rows = (Row::new(&mut self.at_m, at_m), Row::new(&mut self.midway_m, midway_m));
             let quarters = (Row::new(&mut self.first_m, first_m), Row::new(&mut self.second_m, second_m));
             at_level!(level.at_most_256_bits(), s => {
-                for (k, bends) in bends.chunks_mut(WIDE).enumerate() {
+                for (k, quartic_correction) in quartic_correction.chunks_mut(WIDE).enumerate() {
                     let [first, second] = quarters_of(s, &rows, &quarters, WIDE * k);
                     let turned = s.transpose(first).into_iter().zip(s.transpose(second));
-                    for (bend, (first, second)) in bends.iter_mut().zip(turned) {
+                    for (bend, (first, second)) in quartic_correction.iter_mut().zip(turned) {
                         *bend = [first.to_array(), second.to_array()];
                     }
                 }
             });
-            self.begin(bends);
+            self.begin(quartic_correction);
         }
     }
 
     /// The first are none.
     #[inline(always)]
-    fn begin<B: Flat>(&mut self, bends: &mut [B]) {
-        let unknown = (KNOWN - self.known).min(bends.len());
-        bends[..unknown].iter_mut().for_each(|bend| *bend = B::NONE);
+    fn begin<B: Flat>(&mut self, quartic_correction: &mut [B]) {
+        let unknown = (KNOWN - self.known).min(quartic_correction.len());
+        quartic_correction[..unknown].iter_mut().for_each(|bend| *bend = B::NONE);
         self.known += unknown;
     }
 
@@ -194,15 +206,15 @@ trait Flat {
     const NONE: Self;
 }
 
-impl Flat for Bend {
+impl Flat for QuarticCorrection {
     const NONE: Self = [0.0; 4];
 }
 
-impl Flat for [Bend; 2] {
+impl Flat for [QuarticCorrection; 2] {
     const NONE: Self = [[0.0; 4]; 2];
 }
 
-/// Bends of four samples, coefficient by coefficient.
+/// QuarticCorrections of four samples, coefficient by coefficient.
 #[inline(always)]
 fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
@@ -219,7 +231,7 @@ fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     [begin, middle - (two * begin + end), (begin + end) - two * middle, middle]
 }
 
-/// Bends in halves.
+/// QuarticCorrections in halves.
 #[inline(always)]
 fn quarters_of<S: Set>(
     s: S,
@@ -293,26 +305,31 @@ mod tests {
         core::array::from_fn(|n| height(0.1 * (n as f64 + later)))
     }
 
-    /// Bends of them, taken in such blocks.
-    fn bends(level: Level, cuts: usize) -> ([Bend; COUNT], [[Bend; 2]; COUNT]) {
+    /// QuarticCorrections of them, taken in such blocks.
+    fn quartic_correction(
+        level: Level,
+        cuts: usize,
+    ) -> ([QuarticCorrection; COUNT], [[QuarticCorrection; 2]; COUNT]) {
         let [at, first, mid, second] = [0.0, -0.75, -0.5, -0.25].map(heights);
-        let (mut by_mid, mut by_quarters) = (Bends::default(), Bends::default());
-        let (mut bends, mut halves) = ([[0.0; 4]; COUNT], [[[0.0; 4]; 2]; COUNT]);
-        for (k, (bends, halves)) in bends.chunks_mut(cuts).zip(halves.chunks_mut(cuts)).enumerate() {
-            let now = k * cuts..k * cuts + bends.len();
-            by_mid.midway(level, &at[now.clone()], &mid[now.clone()], bends);
+        let (mut by_mid, mut by_quarters) = (QuarticCorrections::default(), QuarticCorrections::default());
+        let (mut quartic_correction, mut halves) = ([[0.0; 4]; COUNT], [[[0.0; 4]; 2]; COUNT]);
+        for (k, (quartic_correction, halves)) in
+            quartic_correction.chunks_mut(cuts).zip(halves.chunks_mut(cuts)).enumerate()
+        {
+            let now = k * cuts..k * cuts + quartic_correction.len();
+            by_mid.midway(level, &at[now.clone()], &mid[now.clone()], quartic_correction);
             let quarters = [&first[now.clone()], &second[now.clone()]];
             by_quarters.quarters(level, &at[now.clone()], &mid[now], quarters, halves);
         }
-        (bends, halves)
+        (quartic_correction, halves)
     }
 
     #[test]
     fn with_its_bend_a_cubic_is_a_polynomial_of_the_fourth_degree_to_rounding() {
-        let (bends, halves) = bends(Level::detect(), 50);
-        assert_eq!((&bends[..3], &halves[..3]), (&[[0.0; 4]; 3][..], &[[[0.0; 4]; 2]; 3][..]));
+        let (quartic_correction, halves) = quartic_correction(Level::detect(), 50);
+        assert_eq!((&quartic_correction[..3], &halves[..3]), (&[[0.0; 4]; 3][..], &[[[0.0; 4]; 2]; 3][..]));
         let at = |x: f64| height(0.1 * x);
-        for (n, (bend, [first, second])) in bends.iter().zip(&halves).enumerate().skip(3) {
+        for (n, (bend, [first, second])) in quartic_correction.iter().zip(&halves).enumerate().skip(3) {
             let end = n as f64 - 1.0;
             let [before, inside, after] = [-1.0, 0.0, 1.0].map(|k| at(end + k) - at(end + k - 1.0));
             let square = 1.5 * inside - before - 0.5 * after;
@@ -335,22 +352,22 @@ mod tests {
 
     #[test]
     fn bends_are_the_same_bits_on_every_set_of_instructions_and_in_any_blocks() {
-        let whole = bends(Level::detect(), 50);
+        let whole = quartic_correction(Level::detect(), 50);
         for level in Level::available() {
             for cuts in [1, 2, 3, 7, 33, 50] {
-                assert!(bends(level, cuts) == whole, "{level:?}, {cuts}");
+                assert!(quartic_correction(level, cuts) == whole, "{level:?}, {cuts}");
             }
         }
     }
 
     #[test]
     fn what_is_forgotten_bends_nothing() {
-        let mut bends = Bends::default();
+        let mut quartic_correction = QuarticCorrections::default();
         let mut out = [[1.0; 4]; 4];
-        bends.midway(Level::detect(), &[1.0, 2.0, 4.0, 3.0], &[0.0; 4], &mut out);
+        quartic_correction.midway(Level::detect(), &[1.0, 2.0, 4.0, 3.0], &[0.0; 4], &mut out);
         assert!(out[..3] == [[0.0; 4]; 3] && out[3] != [0.0; 4]);
-        bends.forget();
-        bends.midway(Level::detect(), &[5.0], &[4.0], &mut out[3..]);
+        quartic_correction.forget();
+        quartic_correction.midway(Level::detect(), &[5.0], &[4.0], &mut out[3..]);
         assert_eq!(out[3], [0.0; 4]);
     }
 }

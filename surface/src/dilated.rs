@@ -20,7 +20,7 @@ const COLUMNS: usize = 16;
 
 /// The map that a tip of `radius_m` rides on: texels `texel_m` apart along u and v.
 #[must_use]
-pub fn ridden(mut heights: Raster, texel_m: [f64; 2], wrap: Wrap, radius_m: f64) -> Raster {
+pub fn dilated(mut heights: Raster, texel_m: [f64; 2], wrap: Wrap, radius_m: f64) -> Raster {
     let (low_m, high_m) = heights.range();
     let reach_m = (2.0 * radius_m * (high_m - low_m)).sqrt();
     let along = |texel_m: f64, length: usize| {
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn a_spike_becomes_the_sphere_that_stands_on_it() {
         let spike = Raster::from_fn(33, 33, |x, y| if (x, y) == (16, 16) { 1e-4 } else { 0.0 });
-        let out = ridden(spike, [1e-4, 1e-4], Wrap::Clamp, 1e-3);
+        let out = dilated(spike, [1e-4, 1e-4], Wrap::Clamp, 1e-3);
         for (x, y) in [(16, 16), (18, 16), (16, 13), (19, 18), (30, 30)] {
             let away_m = 1e-4 * f64::hypot(x as f64 - 16.0, y as f64 - 16.0);
             let sphere_m = (1e-4 - away_m * away_m / 2e-3).max(0.0);
@@ -142,7 +142,7 @@ mod tests {
     fn the_envelope_is_the_largest_of_all_parabolas_whatever_the_wrap() {
         let map = random(23, 17);
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-            let out = ridden(map.clone(), [1e-4, 2e-4], wrap, 2e-4);
+            let out = dilated(map.clone(), [1e-4, 2e-4], wrap, 2e-4);
             for (x, y) in [(0, 0), (22, 16), (11, 5), (3, 15)] {
                 let mut best: f64 = 0.0;
                 for dy in -16_i64..=16 {
@@ -160,9 +160,9 @@ mod tests {
     #[test]
     fn what_is_ridden_never_lies_below_the_ground_and_a_plane_stays_a_plane() {
         let map = random(40, 40);
-        let out = ridden(map.clone(), [1e-4, 1e-4], Wrap::Repeat, 1e-3);
+        let out = dilated(map.clone(), [1e-4, 1e-4], Wrap::Repeat, 1e-3);
         assert!(out.values.iter().zip(&map.values).all(|(z, h)| z >= h));
         let plane = Raster::constant(5, 4, 0.3);
-        assert_eq!(ridden(plane.clone(), [1e-3, 1e-3], Wrap::Repeat, 1e-2), plane);
+        assert_eq!(dilated(plane.clone(), [1e-3, 1e-3], Wrap::Repeat, 1e-2), plane);
     }
 }

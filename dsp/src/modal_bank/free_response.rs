@@ -10,7 +10,7 @@
 //! |---|---|
 //! | v, w | the bank's own states at a multiple of 64 samples, which stay what they are |
 //! | hₙ | what an impulse is n samples later in the other output |
-//! | J | a lane of [`AheadGroup`] |
+//! | J | a lane of [`FreeResponse`] |
 //!
 //! Five products a mode and four samples, as in the bank itself ([`OUT`](super::design::OUT)), and
 //! no chain of states longer than three: less than half of what a rendered bank costs. It is for
@@ -43,12 +43,12 @@ const AT_ONCE: usize = 8;
 /// Another output of 16 modes, one a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
-pub struct AheadGroup {
+pub struct FreeResponse {
     hears: [[Lanes; SUMS]; TURNS],
     step: [[Lanes; 2]; 2],
 }
 
-impl AheadGroup {
+impl FreeResponse {
     /// Sixteen lanes of which nothing is heard.
     pub const SILENT: Self = Self { hears: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
 
@@ -89,7 +89,7 @@ impl AheadGroup {
 }
 
 /// Says what groups in these states would sound like through `ahead`.
-pub(super) fn ahead(level: Level, groups: &[AheadGroup], states: &[GroupState], out: &mut [f32; CELL]) {
+pub(super) fn ahead(level: Level, groups: &[FreeResponse], states: &[GroupState], out: &mut [f32; CELL]) {
     if groups.is_empty() || states.is_empty() {
         return out.fill(0.0);
     }
@@ -97,7 +97,7 @@ pub(super) fn ahead(level: Level, groups: &[AheadGroup], states: &[GroupState], 
 }
 
 #[inline(always)]
-fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out: &mut [f32; CELL]) {
+fn ahead_in<T: Set>(token: T, groups: &[FreeResponse], states: &[GroupState], out: &mut [f32; CELL]) {
     let mut turns = [const { MaybeUninit::<TurnSums>::uninit() }; CELL / TURN];
     // SAFETY: there are `len` lanes from `lane` on and at most AT_ONCE groups; the first groups
     // write every lane of every turn, and there are some. So turns may be read as what they are, in
@@ -128,7 +128,7 @@ fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out:
 #[inline(always)]
 unsafe fn add_lanes<T: Set, const TILE: usize>(
     token: T,
-    groups: &[AheadGroup],
+    groups: &[FreeResponse],
     states: &[GroupState],
     lane: usize,
     is_first: bool,

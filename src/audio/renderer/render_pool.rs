@@ -21,13 +21,13 @@
 
 use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
-use crate::audio::occupied::Occupied;
+use crate::audio::index_set::IndexSet;
 use crate::audio::pool::{Job, Pool};
 use crate::audio::seat::Seat;
-use crate::audio::shared::{At, Shared, Stretch};
+use crate::audio::shared::{SampleRange, Segment, Shared};
 use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
 use crate::link::tap::NoTap;
-use crate::resource::body::{BodySlot, Terms};
+use crate::resource::body::{BodySlot, RenderArgs};
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::MAX_BLOCK;
@@ -40,7 +40,7 @@ const LEAST_CONTACT_SAMPLES: usize = 128;
 const LEAST_MODE_SAMPLES: usize = 40_000;
 
 /// One contact while it is away.
-pub(super) struct VoiceShare {
+pub(super) struct VoiceTask {
     index: usize,
     voice: Box<Voice>,
     output: ContactOutput,
@@ -49,18 +49,18 @@ pub(super) struct VoiceShare {
 }
 
 /// A surface with its contacts.
-struct SurfaceShare {
+struct SurfaceTask {
     index: usize,
-    at: At,
+    at: SampleRange,
     shared: Option<Arc<Shared>>,
     seat: Seat,
-    voices: Vec<Box<VoiceShare>>,
+    voices: Vec<Box<VoiceTask>>,
 }
 
 /// A body that rings.
-struct BodyShare {
+struct BodyTask {
     index: usize,
-    terms: Terms,
+    terms: RenderArgs,
     n: usize,
     body: Option<Box<BodySlot>>,
     cost: usize,
@@ -69,12 +69,12 @@ struct BodyShare {
 }
 
 /// A job of the pool.
-enum Share {
-    Surface(Box<SurfaceShare>),
-    Body(Box<BodyShare>),
+enum Task {
+    Surface(Box<SurfaceTask>),
+    Body(Box<BodyTask>),
 }
 
-impl Job for Share {
+impl Job for Task {
     type Room = Box<Scratch>;
 
     fn run(&mut self, scratch: &mut Box<Scratch>) {
@@ -85,12 +85,12 @@ impl Job for Share {
     }
 }
 
-impl SurfaceShare {
+impl SurfaceTask {
     fn run(&mut self, scratch: &mut Scratch) {
         let Some(shared) = &self.shared else { return };
         for share in &mut self.voices {
-            let VoiceShare { voice, output, pressing, out, .. } = &mut **share;
-            let stretch = Stretch { shared, output, position: self.at.position, n: self.at.n };
+            let VoiceTask { voice, output, pressing, out, .. } = &mut **share;
+            let stretch = Segment { shared, output, position: self.at.position, n: self.at.n };
             *pressing = voice.render(stretch, &mut self.seat, scratch, &mut NoTap);
             std::mem::swap(out, &mut scratch.out);
         }
@@ -99,7 +99,7 @@ impl SurfaceShare {
     }
 }
 
-impl BodyShare {
+impl BodyTask {
     fn run(&mut self) {
         let sound = &mut self.sound[..self.n];
         sound.fill(0.0);
@@ -108,28 +108,28 @@ impl BodyShare {
 }
 
 /// The pool, and the memory of what goes out; all of it made at the start.
-pub(super) struct Crew {
-    pool: Pool<Share>,
-    jobs: Vec<Share>,
-    surfaces: Vec<Box<SurfaceShare>>,
-    voices: Vec<Box<VoiceShare>>,
-    bodies: Vec<Box<BodyShare>>,
+pub(super) struct RenderPool {
+    pool: Pool<Task>,
+    jobs: Vec<Task>,
+    surfaces: Vec<Box<SurfaceTask>>,
+    voices: Vec<Box<VoiceTask>>,
+    bodies: Vec<Box<BodyTask>>,
     /// Contacts that are away, or have been and are not asked for yet, by voice; and those of them
     /// that are back.
     away: Box<[bool]>,
-    rendered: Box<[Option<Box<VoiceShare>>]>,
+    rendered: Box<[Option<Box<VoiceTask>>]>,
     /// One more than the last voice that touches a body in this stretch, by body; 0 for none.
     last_to_touch: Box<[usize]>,
     /// True where bodies go out in this stretch as soon as nobody touches them any more.
     sends_bodies: bool,
     /// Bodies that were rung, in their order.
-    rung: Vec<Box<BodyShare>>,
+    entry: Vec<Box<BodyTask>>,
     next_rung: usize,
     /// The job of each surface that goes out, one more than its place among the jobs; 0 for none.
     job_of: Box<[usize]>,
 }
 
-impl Crew {
+impl RenderPool {
     /// For so many threads, the audio thread among them. Allocates.
     ///
     /// # Errors
@@ -143,11 +143,11 @@ impl Crew {
         let at_once = voices.min(surfaces);
         let surface_share = |_| {
             let voices = Vec::with_capacity(voices);
-            let at = At { position: 0, n: 0 };
-            Box::new(SurfaceShare { index: 0, at, shared: None, seat: Seat::default(), voices })
+            let at = SampleRange { position: 0, n: 0 };
+            Box::new(SurfaceTask { index: 0, at, shared: None, seat: Seat::default(), voices })
         };
         let voice_share = |_| {
-            Box::new(VoiceShare {
+            Box::new(VoiceTask {
                 index: 0,
                 voice: Box::new(Voice::placeholder(shared)),
                 output: shared.idle_output,
@@ -156,9 +156,9 @@ impl Crew {
             })
         };
         let body_share = |_| {
-            Box::new(BodyShare {
+            Box::new(BodyTask {
                 index: 0,
-                terms: Terms { position: 0, mode_level: 0 },
+                terms: RenderArgs { position: 0, mode_level: 0 },
                 n: 0,
                 body: None,
                 cost: 0,
@@ -177,7 +177,7 @@ impl Crew {
             rendered: (0..voices).map(|_| None).collect(),
             last_to_touch: vec![0; bodies].into(),
             sends_bodies: false,
-            rung: Vec::with_capacity(bodies),
+            entry: Vec::with_capacity(bodies),
             next_rung: 0,
             job_of: vec![0; surfaces].into(),
         })
@@ -187,9 +187,9 @@ impl Crew {
     /// waits for [`take_voice`](Self::take_voice).
     pub(super) fn send_contacts(
         &mut self,
-        at: At,
+        at: SampleRange,
         shared: &Arc<Shared>,
-        (voices, used): (&mut [Box<Voice>], &Occupied),
+        (voices, used): (&mut [Box<Voice>], &IndexSet),
         seats: &mut [Seat],
         channels: &[HapticChannel],
     ) -> bool {
@@ -213,19 +213,19 @@ impl Crew {
                 self.jobs.extend(self.surfaces.pop().map(|mut surface| {
                     (surface.index, surface.at, surface.shared) = (place, at, Some(shared.clone()));
                     std::mem::swap(&mut surface.seat, &mut seats[place]);
-                    Share::Surface(surface)
+                    Task::Surface(surface)
                 }));
                 self.job_of[place] = self.jobs.len();
             }
-            if let Some(Share::Surface(surface)) = self.jobs.get_mut(self.job_of[place] - 1) {
+            if let Some(Task::Surface(surface)) = self.jobs.get_mut(self.job_of[place] - 1) {
                 touched(&share.voice, &surface.seat).for_each(|body| self.last_to_touch[body] = index + 1);
                 surface.voices.push(share);
             }
         }
         // The dearest last: it goes out first.
         self.jobs.sort_unstable_by_key(|job| match job {
-            Share::Surface(surface) => (surface.voices.len(), usize::MAX - surface.index),
-            Share::Body(_) => (0, 0),
+            Task::Surface(surface) => (surface.voices.len(), usize::MAX - surface.index),
+            Task::Body(_) => (0, 0),
         });
         self.send_all();
         self.pool.wake();
@@ -239,13 +239,13 @@ impl Crew {
         voices: &mut [Box<Voice>],
         seats: &mut [Seat],
         scratch: &mut Box<Scratch>,
-    ) -> Option<Box<VoiceShare>> {
+    ) -> Option<Box<VoiceTask>> {
         if !std::mem::take(&mut self.away[index]) {
             return None;
         }
         while self.rendered[index].is_none() {
             match self.pool.next(scratch)? {
-                Share::Surface(mut surface) => {
+                Task::Surface(mut surface) => {
                     std::mem::swap(&mut surface.seat, &mut seats[surface.index]);
                     self.job_of[surface.index] = 0;
                     while let Some(mut share) = surface.voices.pop() {
@@ -255,20 +255,26 @@ impl Crew {
                     }
                     self.surfaces.push(surface);
                 }
-                Share::Body(body) => self.rung.push(body),
+                Task::Body(body) => self.entry.push(body),
             }
         }
         self.rendered[index].take()
     }
 
     /// Keeps the memory for the next contact.
-    pub(super) fn put_back(&mut self, share: Box<VoiceShare>) {
+    pub(super) fn put_back(&mut self, share: Box<VoiceTask>) {
         self.voices.push(share);
     }
 
     /// While contacts are away: sends out the bodies that nobody touches, if sharing bodies pays;
     /// the others go as they [are left](Self::leave_bodies).
-    pub(super) fn send_bodies(&mut self, terms: Terms, n: usize, bodies: &mut [BodySeat], used: &Occupied) {
+    pub(super) fn send_bodies(
+        &mut self,
+        terms: RenderArgs,
+        n: usize,
+        bodies: &mut [BodySeat],
+        used: &IndexSet,
+    ) {
         self.sends_bodies = bodies_pay(terms, n, bodies, used);
         for index in used.iter() {
             if self.sends_bodies && self.last_to_touch[index] == 0 {
@@ -282,7 +288,7 @@ impl Crew {
         &mut self,
         voice: usize,
         (touching, seat): (&Voice, &Seat),
-        (terms, n): (Terms, usize),
+        (terms, n): (RenderArgs, usize),
         bodies: &mut [BodySeat],
     ) {
         for body in touched(touching, seat) {
@@ -295,7 +301,7 @@ impl Crew {
         }
     }
 
-    fn send_body(&mut self, index: usize, terms: Terms, n: usize, body: &mut BodySeat) {
+    fn send_body(&mut self, index: usize, terms: RenderArgs, n: usize, body: &mut BodySeat) {
         let cost = body.modes_that_ring(terms.position);
         if cost == 0 {
             return;
@@ -303,7 +309,7 @@ impl Crew {
         let Some(mut share) = self.bodies.pop() else { return };
         (share.index, share.terms, share.n, share.cost) = (index, terms, n, cost);
         share.body = body.lend();
-        self.jobs.push(Share::Body(share));
+        self.jobs.push(Task::Body(share));
         self.send_all();
     }
 
@@ -311,9 +317,9 @@ impl Crew {
     /// [`take_body`](Self::take_body).
     pub(super) fn ring_bodies(
         &mut self,
-        terms: Terms,
+        terms: RenderArgs,
         n: usize,
-        (bodies, used): (&mut [BodySeat], &Occupied),
+        (bodies, used): (&mut [BodySeat], &IndexSet),
         scratch: &mut Box<Scratch>,
     ) {
         self.next_rung = 0;
@@ -324,14 +330,14 @@ impl Crew {
             self.pool.wake();
         }
         while let Some(job) = self.pool.next(scratch) {
-            if let Share::Body(share) = job {
-                self.rung.push(share);
+            if let Task::Body(share) = job {
+                self.entry.push(share);
             }
         }
-        for share in &mut self.rung {
+        for share in &mut self.entry {
             bodies[share.index].take_back(share.body.take());
         }
-        self.rung.sort_unstable_by_key(|share| share.index);
+        self.entry.sort_unstable_by_key(|share| share.index);
     }
 
     /// Sends the jobs out, the last of them first.
@@ -348,14 +354,14 @@ impl Crew {
     /// Sound of a body in this stretch but for the first samples of its strikes, and the number of
     /// groups that were not driven, if it was shared. Bodies are asked for in their order.
     pub(super) fn take_body(&mut self, index: usize) -> Option<(&[f32], usize)> {
-        let share = self.rung.get(self.next_rung).filter(|share| share.index == index)?;
+        let share = self.entry.get(self.next_rung).filter(|share| share.index == index)?;
         self.next_rung += 1;
         Some((&share.sound[..share.n], share.left_out))
     }
 
     /// Keeps the memory for the next bodies.
     pub(super) fn put_bodies_back(&mut self) {
-        self.bodies.append(&mut self.rung);
+        self.bodies.append(&mut self.entry);
     }
 }
 
@@ -366,7 +372,7 @@ fn touched(voice: &Voice, seat: &Seat) -> impl Iterator<Item = usize> + use<> {
 }
 
 /// Tests whether at least two bodies ring, and are work enough.
-fn bodies_pay(terms: Terms, n: usize, bodies: &[BodySeat], used: &Occupied) -> bool {
+fn bodies_pay(terms: RenderArgs, n: usize, bodies: &[BodySeat], used: &IndexSet) -> bool {
     let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
     let (ringing, modes) =
         costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
@@ -376,11 +382,11 @@ fn bodies_pay(terms: Terms, n: usize, bodies: &[BodySeat], used: &Occupied) -> b
 }
 
 /// Tests whether contacts lie on at least two surfaces, and are work enough.
-fn pays(at: At, voices: &[Box<Voice>], used: &Occupied) -> bool {
-    let mut awake = used.iter().map(|index| &voices[index]).filter(|voice| voice.works());
-    let Some(first) = awake.next() else { return false };
+fn pays(at: SampleRange, voices: &[Box<Voice>], used: &IndexSet) -> bool {
+    let mut active_groups = used.iter().map(|index| &voices[index]).filter(|voice| voice.works());
+    let Some(first) = active_groups.next() else { return false };
     let (mut count, mut elsewhere) = (1, false);
-    for voice in awake {
+    for voice in active_groups {
         count += 1;
         elsewhere |= voice.surface != first.surface;
     }

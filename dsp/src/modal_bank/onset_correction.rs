@@ -14,7 +14,7 @@
 //! | F, t₀ | the force and the onset of [`HertzPulse`] |
 //! | x, β³ | what the pulse leaves in the ring, and the ring's cubic kernel |
 //! | h, h' | response of all modes to an impulse, 0 before it, and of the compensated ones with their direct terms: the bank's |
-//! | E | [`FirstSamples`]: a polynomial for each of its four samples, and its moments |
+//! | E | [`OnsetCorrection`]: a polynomial for each of its four samples, and its moments |
 //!
 //! Effect (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10
 //! µs contact, rms over 50 ms) to 14 % (the same with a tenth of the ringing) from the response of
@@ -46,12 +46,12 @@ const GAUSS: [(f64, f64); 6] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170_3),
 ];
 
-/// E of some modes at the Chebyshev nodes of each sample; what [`FirstSamples`] are made from where
+/// E of some modes at the Chebyshev nodes of each sample; what [`OnsetCorrection`] are made from where
 /// several places of a body share its modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MissingSamples([[f64; TERMS]; REACH]);
+pub struct OnsetSamples([[f64; TERMS]; REACH]);
 
-impl MissingSamples {
+impl OnsetSamples {
     /// No mode.
     pub const NOTHING: Self = Self([[0.0; TERMS]; REACH]);
 
@@ -87,9 +87,11 @@ impl MissingSamples {
 
     /// The modes so far, ready to be added to strikes.
     #[must_use]
-    pub fn first_samples(&self) -> FirstSamples {
-        let mut all =
-            FirstSamples { pieces: self.0.map(|piece| chebyshev_series(&piece)), ..FirstSamples::NOTHING };
+    pub fn first_samples(&self) -> OnsetCorrection {
+        let mut all = OnsetCorrection {
+            pieces: self.0.map(|piece| chebyshev_series(&piece)),
+            ..OnsetCorrection::NOTHING
+        };
         for k in 0..POWERS {
             all.moments[k] = all.moment(k as i32);
         }
@@ -99,14 +101,14 @@ impl MissingSamples {
 
 /// Deficit of the response to an impulse of 1 N·s at one place of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FirstSamples {
+pub struct OnsetCorrection {
     /// E over each sample, in Chebyshev polynomials.
     pieces: [[f64; TERMS]; REACH],
     /// ∫ E(u) (u − 2)ᵏ du.
     moments: [f64; POWERS],
 }
 
-impl FirstSamples {
+impl OnsetCorrection {
     /// Nothing is missing: a body without modes.
     pub const NOTHING: Self = Self { pieces: [[0.0; TERMS]; REACH], moments: [0.0; POWERS] };
 
@@ -116,9 +118,9 @@ impl FirstSamples {
     /// # Errors
     /// Names the field that is out of range.
     pub fn new(modes: impl IntoIterator<Item = Mode>, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let mut all = MissingSamples::NOTHING;
+        let mut all = OnsetSamples::NOTHING;
         for mode in modes {
-            all.add(&MissingSamples::of(&mode, sample_rate_hz)?, 1.0);
+            all.add(&OnsetSamples::of(&mode, sample_rate_hz)?, 1.0);
         }
         Ok(all.first_samples())
     }

@@ -3,10 +3,10 @@
 use crate::model::event::{Emphasis, Touching};
 use crate::model::id::{BodyId, ProbeId};
 
-/// Role: what touches, who feels it and what is held, fixed while a contact lasts; how loud and how
+/// Binding: what touches, who feels it and what is held, fixed while a contact lasts; how loud and how
 /// important it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Role {
+pub(crate) struct Binding {
     /// Haptic channel; none = heard only.
     pub(crate) actuator: Option<usize>,
     /// Place of the probe; none = the engine's own.
@@ -17,7 +17,7 @@ pub(crate) struct Role {
     pub(crate) importance: f64,
 }
 
-impl Role {
+impl Binding {
     /// Another gain or importance.
     pub(crate) fn emphasise(&mut self, emphasis: Emphasis) {
         self.gain = emphasis.gain.unwrap_or(self.gain);
@@ -25,13 +25,13 @@ impl Role {
     }
 }
 
-impl Default for Role {
+impl Default for Binding {
     fn default() -> Self {
         Self { actuator: None, probe: None, holder: None, gain: 1.0, importance: 1.0 }
     }
 }
 
-impl From<&Touching> for Role {
+impl From<&Touching> for Binding {
     fn from(touching: &Touching) -> Self {
         Self {
             actuator: touching.actuator.map(|actuator| usize::from(actuator.0)),

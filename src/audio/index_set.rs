@@ -1,9 +1,9 @@
 //! The set of occupied places, in order, so that the empty ones cost nothing.
 
 /// Ascending numbers of the places in use. All memory is made at the start.
-pub(crate) struct Occupied(Vec<usize>);
+pub(crate) struct IndexSet(Vec<usize>);
 
-impl Occupied {
+impl IndexSet {
     /// None of `capacity` places.
     pub(crate) fn new(capacity: usize) -> Self {
         Self(Vec::with_capacity(capacity))
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn places_are_listed_once_and_in_order() {
-        let mut used = Occupied::new(8);
+        let mut used = IndexSet::new(8);
         for place in [5, 2, 7, 2, 0, 5] {
             used.insert(place);
         }

@@ -13,7 +13,7 @@ const FEW_INPUTS: usize = 4;
 /// many leading ones. Within a section what rings longest stands first, and the sections stand in
 /// the order of need ([`super::shedding_order`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Awake {
+pub(super) struct ActiveGroups {
     /// Beginnings of the sections, and the end of the last.
     bounds: [usize; MODE_LEVELS + 1],
     groups: [usize; MODE_LEVELS],
@@ -25,7 +25,7 @@ pub(super) struct Awake {
     all_ring: bool,
 }
 
-impl Awake {
+impl ActiveGroups {
     /// As states are, where modes are left out at these levels.
     pub(super) fn of(states: &[GroupState], levels: &SheddingLevels) -> Self {
         let mut bounds = [0; MODE_LEVELS + 1];
@@ -34,13 +34,13 @@ impl Awake {
         }
         bounds[MODE_LEVELS] = states.len();
         let (groups, joined) = ([0; MODE_LEVELS], [true; MODE_LEVELS]);
-        let mut awake = Self { bounds, groups, joined, all_ring: false };
-        for (groups, ends) in awake.groups.iter_mut().zip(bounds.windows(2)) {
+        let mut active_groups = Self { bounds, groups, joined, all_ring: false };
+        for (groups, ends) in active_groups.groups.iter_mut().zip(bounds.windows(2)) {
             let states = &states[ends[0]..ends[1]];
             *groups = states.iter().rposition(|state| !state.is_at_rest()).map_or(0, |last| last + 1);
         }
-        awake.join();
-        awake
+        active_groups.join();
+        active_groups
     }
 
     /// Nothing rings any more.
@@ -61,15 +61,20 @@ impl Awake {
     /// before one that sleeps.
     fn join(&mut self) {
         for (section, joined) in self.joined.iter_mut().enumerate() {
-            let (awake, next) = (self.groups[section], self.groups.get(section + 1).copied().unwrap_or(0));
-            *joined = awake == self.bounds[section + 1] - self.bounds[section] || (awake == 0 && next == 0);
+            let (active_groups, next) =
+                (self.groups[section], self.groups.get(section + 1).copied().unwrap_or(0));
+            *joined = active_groups == self.bounds[section + 1] - self.bounds[section]
+                || (active_groups == 0 && next == 0);
         }
         self.note_whether_all_ring();
     }
 
     fn note_whether_all_ring(&mut self) {
-        let all_awake =
-            self.groups.iter().zip(self.bounds.windows(2)).all(|(awake, ends)| ends[0] + awake == ends[1]);
+        let all_awake = self
+            .groups
+            .iter()
+            .zip(self.bounds.windows(2))
+            .all(|(active_groups, ends)| ends[0] + active_groups == ends[1]);
         self.all_ring = all_awake && self.joined == [true; MODE_LEVELS] && self.bounds[MODE_LEVELS] > 0;
     }
 
@@ -142,9 +147,9 @@ impl Awake {
                 out[part].iter_mut().zip(&together).for_each(|(sum, x)| *sum += x);
             }
             if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
-                for (from, awake) in self.bounds.iter().zip(&mut self.groups) {
-                    let ringing = *from..from + *awake;
-                    *awake = kernel.settle(&groups[ringing.clone()], &mut states[ringing], threshold);
+                for (from, active_groups) in self.bounds.iter().zip(&mut self.groups) {
+                    let ringing = *from..from + *active_groups;
+                    *active_groups = kernel.settle(&groups[ringing.clone()], &mut states[ringing], threshold);
                 }
                 self.join();
             }
@@ -158,13 +163,13 @@ impl Awake {
             return false;
         }
         let mut sections = self.groups.iter().zip(self.bounds.windows(2));
-        sections.any(|(awake, ends)| ends[0] + awake < ends[1].min(driven))
+        sections.any(|(active_groups, ends)| ends[0] + active_groups < ends[1].min(driven))
     }
 
     /// Wakes the first `driven` groups.
     fn wake(&mut self, driven: usize) {
-        for (awake, ends) in self.groups.iter_mut().zip(self.bounds.windows(2)) {
-            *awake = (*awake).max(driven.clamp(ends[0], ends[1]) - ends[0]);
+        for (active_groups, ends) in self.groups.iter_mut().zip(self.bounds.windows(2)) {
+            *active_groups = (*active_groups).max(driven.clamp(ends[0], ends[1]) - ends[0]);
         }
         self.note_whether_all_ring();
     }
