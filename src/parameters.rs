@@ -1,9 +1,9 @@
 //! Parameters: every number that a scene file or a contact log may hold, with its unit, range,
 //! default and source.
 //!
-//! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats/scene.md`
-//! its tables, an inspector its sliders. The ranges themselves are those of [`limits`], which the
-//! kernels check.
+//! One list for everybody: the reader of scene files takes its ranges from here,
+//! `docs/formats/scene.md` its tables, an inspector its sliders. The ranges themselves are those of
+//! [`limits`], which the kernels check.
 
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use asperity_dsp::limits::{self, Range};

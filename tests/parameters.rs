@@ -1,5 +1,5 @@
-//! The list of parameters is what the reader of scene files accepts and what `docs/formats/scene.md`
-//! says.
+//! The list of parameters is what the reader of scene files accepts and what
+//! `docs/formats/scene.md` says.
 //!
 //! `ASPERITY_WRITE_DOCS=1 cargo test --release parameters::` writes the tables of the document
 //! anew.

@@ -3,8 +3,8 @@
 use crate::model::event::{Emphasis, Touching};
 use crate::model::id::{BodyId, ProbeId};
 
-/// Binding: what touches, who feels it and what is held, fixed while a contact lasts; how loud and how
-/// important it is.
+/// Binding: what touches, who feels it and what is held, fixed while a contact lasts; how loud and
+/// how important it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Binding {
     /// Haptic channel; none = heard only.

@@ -27,9 +27,9 @@
 //! *Its own lateness only.* A block may be late because the host did something else, and leaving
 //! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
 //! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`LATE`] while that
-//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. SampleRange a share of 1
-//! % up to 15 late blocks in a row change nothing; work that does not fit is answered after 16
-//! blocks.
+//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. SampleRange a
+//! share of 1 % up to 15 late blocks in a row change nothing; work that does not fit is answered
+//! after 16 blocks.
 //!
 //! The level is a function of the reports and of the samples rendered alone: where no load is
 //! reported, as offline, nothing is ever left out and every bit repeats.

@@ -9,10 +9,10 @@ use crate::text;
 use asperity::files::contact_log::{ContactLog, LogError, LogEvent};
 use std::ffi::c_char;
 
-/// Reads the text of a contact log (JSON Lines; docs/formats/log.md) into `events` and `times_s`, both
-/// of `capacity`, with the ids that the scene's names stand for. `count` is how many events the log
-/// holds: call once with a capacity of 0 to learn it. `size` is sizeof(asp_event). A log that holds
-/// edits of a scene is refused.
+/// Reads the text of a contact log (JSON Lines; docs/formats/log.md) into `events` and `times_s`,
+/// both of `capacity`, with the ids that the scene's names stand for. `count` is how many events
+/// the log holds: call once with a capacity of 0 to learn it. `size` is sizeof(asp_event). A log
+/// that holds edits of a scene is refused.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_read_log(
     scene: *mut asp_scene,

@@ -12,8 +12,8 @@
 //! a sample costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
-//! latency, and what is known to bend beside it ([`SubSampleProfile`]); the force is the mean of both
-//! ends.
+//! latency, and what is known to bend beside it ([`SubSampleProfile`]); the force is the mean of
+//! both ends.
 
 use super::flow::{MAX_LEVEL, Regime};
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
@@ -28,9 +28,9 @@ const TICK_PHASE: f64 = 0.07;
 /// Longest pressed map, radians: a longer one could leave and come back unseen.
 const PRESSED_PHASE: f64 = 1.0;
 
-/// Kinds of [`SubSampleProfile`], for what is compiled for each. Ground that bends can meet a pad and
-/// leave it within a sample: it is looked at wherever it is known, in pieces of 2⁻¹ of a sample or
-/// of 2⁻².
+/// Kinds of [`SubSampleProfile`], for what is compiled for each. Ground that bends can meet a pad
+/// and leave it within a sample: it is looked at wherever it is known, in pieces of 2⁻¹ of a sample
+/// or of 2⁻².
 pub(super) const AT_SAMPLES: u8 = 0;
 pub(super) const MIDWAY: u8 = 1;
 pub(super) const QUARTERS: u8 = 2;

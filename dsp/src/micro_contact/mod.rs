@@ -299,8 +299,8 @@ impl MicroContact {
         self.run_over(state, height_m, normal_force_n, SubSampleProfile::AtSamples, out);
     }
 
-    /// [`Self::run`] over ground that is known between its samples as well ([`QuarticCorrections`]). Only the
-    /// exact scheme looks at it.
+    /// [`Self::run`] over ground that is known between its samples as well
+    /// ([`QuarticCorrections`]). Only the exact scheme looks at it.
     pub fn run_over(
         &self,
         state: &mut ContactState,

@@ -1,5 +1,5 @@
-//! QuarticCorrections of a profile between two samples beside the cubic through them, where it is known midway
-//! too, or at every quarter.
+//! QuarticCorrections of a profile between two samples beside the cubic through them, where it is
+//! known midway too, or at every quarter.
 //!
 //! ```text
 //! s(0) = 4/3 (m₊ − m₋) − 1/6 (h₊ − h₋)        bend = quartic(h₀, h₁, s(0), s(1), m) − cubic(h₀, h₁, (h₊ − h₋)/2 …)
@@ -155,8 +155,8 @@ impl QuarticCorrections {
         }
     }
 
-    /// QuarticCorrections with heights at the quarters: one in the first half of the way from the sample before,
-    /// one in the second.
+    /// QuarticCorrections with heights at the quarters: one in the first half of the way from the
+    /// sample before, one in the second.
     pub fn quarters(
         &mut self,
         level: Level,

@@ -46,8 +46,8 @@ const GAUSS: [(f64, f64); 6] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170_3),
 ];
 
-/// E of some modes at the Chebyshev nodes of each sample; what [`OnsetCorrection`] are made from where
-/// several places of a body share its modes.
+/// E of some modes at the Chebyshev nodes of each sample; what [`OnsetCorrection`] are made from
+/// where several places of a body share its modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnsetSamples([[f64; TERMS]; REACH]);
 

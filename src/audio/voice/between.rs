@@ -11,7 +11,8 @@
 //! m/s under 0.8 N pays on no roughness up to 0.8. A stroke of 0.1 m/s under 0.5 N on wood takes a
 //! tenth more where it is looked at midway; without, the demo's third octaves move by 0.007 dB in
 //! the median and 0.33 at most. Only for the integrator that knows events. Beginning anew costs
-//! three samples of cubic, hence the hysteresis. Its price: `dsp::micro_contact::QuarticCorrections`.
+//! three samples of cubic, hence the hysteresis. Its price:
+//! `dsp::micro_contact::QuarticCorrections`.
 
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;

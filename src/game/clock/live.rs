@@ -206,8 +206,8 @@ impl Live {
         tie.ahead = tie.least_lead > self.max_lead;
     }
 
-    /// SampleRange the end of a window: follows another pace, if two windows in a row agree about it.
-    /// Whether they do.
+    /// SampleRange the end of a window: follows another pace, if two windows in a row agree about
+    /// it. Whether they do.
     fn weigh_pace(&mut self, tie: &mut Tie, time_s: f64, sample: f64) -> bool {
         let now = tie.latest.1;
         let window = std::mem::replace(&mut tie.window, Window::at(now));
