@@ -86,6 +86,7 @@ mod game;
 mod link;
 pub mod live;
 pub mod load;
+mod make;
 mod model;
 pub mod offline;
 mod opaque;

@@ -2,17 +2,15 @@
 
 mod change;
 mod doubts;
-pub(crate) mod edit;
 pub mod levels;
-mod loader;
-pub(crate) mod maker;
-pub(crate) mod maps;
 mod parts;
-pub(crate) mod source;
 
 use crate::engine::Engine;
 use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
+pub use crate::make::edit::{Edits, MakeSurface};
+use crate::make::maker::{self, Loader};
+pub use crate::make::maps::Maps;
 use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
@@ -23,10 +21,7 @@ use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
 use asperity_surface::raster::Raster;
 pub use change::Changes;
-pub use edit::{Edits, MakeSurface};
 use levels::Levels;
-use maker::Loader;
-pub use maps::Maps;
 pub use parts::ReadSurface;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -10,7 +10,7 @@ use crate::game::scene::Scene;
 use crate::game::silence::SilentBecause;
 use crate::link::stats::Stats;
 use crate::link::tap::{NoTap, Tap};
-use crate::load::edit::Edits;
+use crate::make::edit::Edits;
 use crate::model::error::ReportError;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;

@@ -3,7 +3,7 @@
 use crate::model::event::{Emphasis, Touching};
 use crate::model::id::{BodyId, ProbeId};
 
-/// Binding: what touches, who feels it and what is held, fixed while a contact lasts; how loud and
+/// Role: what touches, who feels it and what is held, fixed while a contact lasts; how loud and
 /// how important it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Binding {

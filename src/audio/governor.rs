@@ -27,7 +27,7 @@
 //! *Its own lateness only.* A block may be late because the host did something else, and leaving
 //! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
 //! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`LATE`] while that
-//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. SampleRange a
+//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a
 //! share of 1 % up to 15 late blocks in a row change nothing; work that does not fit is answered
 //! after 16 blocks.
 //!
@@ -36,9 +36,9 @@
 
 use crate::resource::bank::MODE_LEVELS;
 
-/// Task of the period from which a block counts as late.
+/// Share of the period from which a block counts as late.
 pub(crate) const LATE: f32 = 0.8;
-/// Task of the period below which there is room for more work.
+/// Share of the period below which there is room for more work.
 pub(crate) const EASY: f32 = 0.5;
 /// Time that the load must be easy for one level back, s.
 pub(crate) const RECOVERY_S: f64 = 0.5;

@@ -63,7 +63,7 @@ pub struct Renderer {
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
-    /// SampleRange the places that the game names, and behind them those that ring out.
+    /// At the places that the game names, and behind them those that ring out.
     bodies: Vec<BodySeat>,
     /// Which of the three are in use, so that empty places cost nothing.
     voices_used: IndexSet,

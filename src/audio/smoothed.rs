@@ -54,7 +54,7 @@ impl Smoothed {
 /// split into blocks, and goes along a straight line between two of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Ramp {
-    /// SampleRange the last step of the grid, and at the next.
+    /// At the last step of the grid, and at the next.
     ends: [f64; 2],
 }
 

@@ -140,7 +140,7 @@ fn spectrum(periods: f64) -> f64 {
     (1.0 + libm::pow(1.35 * periods, 5.0)).sqrt().recip()
 }
 
-/// Task of a mode's answer to an impulse with which it follows such a pulse.
+/// Share of a mode's answer to an impulse with which it follows such a pulse.
 fn followed(periods: f64) -> f64 {
     if periods > 1.0 { 0.13 / periods } else { 0.0 }
 }

@@ -108,7 +108,7 @@ struct Touched {
     surface: SurfaceId,
     at_m: Option<[f64; 3]>,
     spin: Spin,
-    /// Placement of its probe; none = the engine's own.
+    /// Place of its probe; none = the engine's own.
     probe: Option<usize>,
     /// The gain that the game has told, and whether nobody feels it.
     gain: f64,

@@ -34,7 +34,7 @@ use crate::engine::Engine;
 use crate::files::FileError;
 use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, Striker};
 use crate::files::scene_file::{SceneFile, Source};
-use crate::load::maker::felt_force_exponent;
+use crate::make::maker::felt_force_exponent;
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
 pub use crate::model::levels::{

@@ -14,7 +14,7 @@ use crate::model::error::Refusal;
 use crate::model::frame::SurfaceFrame;
 use asperity_dsp::limits;
 
-/// Placement and manner of a contact at one instant.
+/// Place and manner of a contact at one instant.
 ///
 /// ```
 /// use asperity::ContactSample;
@@ -41,7 +41,7 @@ pub struct ContactSample {
     /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin)
     /// only.
     pub closing_m_s: f64,
-    /// Placement in the frame of the body that the surface belongs to, m.
+    /// Place in the frame of the body that the surface belongs to, m.
     pub at_m: Option<[f64; 3]>,
     /// Depth of the tip below the untouched surface, m; below 0 it is above it. For surfaces that
     /// give way.

@@ -126,7 +126,7 @@ impl Holding {
         self.changed = true;
     }
 
-    /// SampleRange the end of a cell: who did not press has let go, and one group follows what has
+    /// At the end of a cell: who did not press has let go, and one group follows what has
     /// changed; which it is.
     pub(crate) fn go_on(&mut self, bank: &mut Bank) -> Option<usize> {
         for press in &mut self.holds {

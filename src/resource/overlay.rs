@@ -77,9 +77,9 @@ const WAYS: [f64; 3] = [0.5, 0.25, 0.75];
 pub(crate) struct BetweenQuery {
     /// The coarsest octave that counts among them.
     pub(crate) octave: usize,
-    /// SampleRange the quarters too, and not midway only.
+    /// At the quarters too, and not midway only.
     pub(crate) quarters: bool,
-    /// TilePosition before the first sample.
+    /// Place before the first sample.
     pub(crate) from_m: [f64; 2],
 }
 
@@ -111,7 +111,7 @@ pub(crate) struct NoiseQuery<'a> {
     pub(crate) power_m2: &'a [f64],
 }
 
-/// TilePosition of a path in its lap of the tile, and what meets there.
+/// Place of a path in its lap of the tile, and what meets there.
 struct Lap {
     /// Beginning of the lap that all of it lies in, if it is one.
     begin_m: [Option<f64>; 2],
@@ -332,7 +332,7 @@ fn fills_m2(rms_m: f64) -> f64 {
     4.0 * rms_m * rms_m
 }
 
-/// Task of the noise's long waves that there is room for beside a source's own relief.
+/// Share of the noise's long waves that there is room for beside a source's own relief.
 fn room(power_m2: f64, rms_m: f64) -> f64 {
     let room = (1.0 - power_m2 / fills_m2(rms_m)).clamp(0.0, 1.0);
     room * room * (3.0 - 2.0 * room)

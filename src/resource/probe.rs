@@ -75,7 +75,7 @@ impl PreparedProbe {
         self.micro_contact.probe().ridge_m
     }
 
-    /// SampleRange the engine's inner rate; `own` is the engine's own probe.
+    /// At the engine's inner rate; `own` is the engine's own probe.
     pub(crate) fn new(
         probe: &Probe,
         own: &Probe,

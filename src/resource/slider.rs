@@ -25,7 +25,7 @@ pub(crate) fn glide(sample_rate_hz: f64) -> f32 {
 pub(crate) struct Slider {
     pub(crate) owner: Option<ContactKey>,
     place: StrikePlace,
-    /// SampleRange the beginning of the cell, at its end, and where they go.
+    /// At the beginning of the cell, at its end, and where they go.
     gains: [Box<[LaneGains]>; 3],
     arrived: bool,
     pub(crate) touched: bool,

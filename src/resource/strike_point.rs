@@ -1,4 +1,4 @@
-//! StrikePoint: the place of a touch on a body.
+//! Place: the place of a touch on a body.
 
 use crate::model::strike_field::StrikePlace;
 

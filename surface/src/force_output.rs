@@ -1,4 +1,4 @@
-//! ForceOutput: the force with which a surface answers a tool, beside carrying it and rubbing on
+//! Force: the force with which a surface answers a tool, beside carrying it and rubbing on
 //! it.
 //!
 //! ```text
@@ -19,7 +19,7 @@
 
 use crate::block::MAX_BLOCK;
 
-/// ForceOutput of a surface at each sample of a block.
+/// Force of a surface at each sample of a block.
 #[derive(Debug, Clone)]
 pub struct ForceOutput {
     is_empty: bool,
@@ -28,7 +28,7 @@ pub struct ForceOutput {
     cap_n: [f64; MAX_BLOCK],
 }
 
-/// ForceOutput of a surface at one sample.
+/// Force of a surface at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceAt {
     /// Along u, v and out of the surface, N.

@@ -46,7 +46,7 @@ impl TileAxis {
         Self { length_m, blend_m: longest_m.min(0.25 * length_m) }
     }
 
-    /// TilePosition in its tile of a place on the unwrapped surface.
+    /// Place in its tile of a place on the unwrapped surface.
     #[inline]
     #[must_use]
     pub fn place(&self, position_m: f64) -> TilePosition {
@@ -143,7 +143,7 @@ impl Tiled {
         [self.axes[0].place(position_m[0]), self.axes[1].place(position_m[1])]
     }
 
-    /// TilePosition where a copy of the tile is read.
+    /// Place where a copy of the tile is read.
     fn back(&self, places: &[TilePosition; 2], copy: [usize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| places[axis].at_m - if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 })
     }

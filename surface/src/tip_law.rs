@@ -17,7 +17,7 @@ const STICK_M_S: f64 = 1e-3;
 /// No spring carries more, N.
 const MOST_N: f64 = 1e9;
 
-/// ForceOutput of a surface to a depth.
+/// Force of a surface to a depth.
 #[expect(
     clippy::large_enum_variant,
     reason = "a plain value that a device's thread copies once; boxing it would end that"

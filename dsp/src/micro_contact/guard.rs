@@ -88,7 +88,7 @@ pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
 }
 
-/// QuarticCorrections of up to [`GRID`] rows that a kernel can trust: what cannot be one is none.
+/// Corrections of up to [`GRID`] rows that a kernel can trust: what cannot be one is none.
 pub(super) struct CleanGround {
     halves: [[QuarticCorrection; 2]; GRID],
     quartic_correction: [QuarticCorrection; GRID],

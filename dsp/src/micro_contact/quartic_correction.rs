@@ -1,4 +1,4 @@
-//! QuarticCorrections of a profile between two samples beside the cubic through them, where it is
+//! Corrections of a profile between two samples beside the cubic through them, where it is
 //! known midway too, or at every quarter.
 //!
 //! ```text
@@ -155,7 +155,7 @@ impl QuarticCorrections {
         }
     }
 
-    /// QuarticCorrections with heights at the quarters: one in the first half of the way from the
+    /// Corrections with heights at the quarters: one in the first half of the way from the
     /// sample before, one in the second.
     pub fn quarters(
         &mut self,
@@ -214,7 +214,7 @@ impl Flat for [QuarticCorrection; 2] {
     const NONE: Self = [[0.0; 4]; 2];
 }
 
-/// QuarticCorrections of four samples, coefficient by coefficient.
+/// Corrections of four samples, coefficient by coefficient.
 #[inline(always)]
 fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
@@ -231,7 +231,7 @@ fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
     [begin, middle - (two * begin + end), (begin + end) - two * middle, middle]
 }
 
-/// QuarticCorrections in halves.
+/// Corrections in halves.
 #[inline(always)]
 fn quarters_of<S: Set>(
     s: S,
@@ -305,7 +305,7 @@ mod tests {
         core::array::from_fn(|n| height(0.1 * (n as f64 + later)))
     }
 
-    /// QuarticCorrections of them, taken in such blocks.
+    /// Corrections of them, taken in such blocks.
     fn quartic_correction(
         level: Level,
         cuts: usize,

@@ -7,7 +7,7 @@ pub(super) struct Meter {
     peak: f32,
     /// Peak of the present [`MAX_BLOCK`] samples.
     now: f32,
-    /// Task that is left of the peak after [`MAX_BLOCK`] samples.
+    /// Share that is left of the peak after [`MAX_BLOCK`] samples.
     fall: f32,
 }
 

@@ -4,7 +4,7 @@
 //! ```text
 //! collisions, grains → Hertz pulses → ring → high-pass ┐
 //! alternating contact force ──────────────────────────┴ × loudness → impulses, N·s, spread for the bank
-//! friction ── speed and force along the motion → the body's own step (`prepared::body_rub`)
+//! friction ── speed and force along the motion → the body's own step (`resource::body_rub`)
 //! ```
 //! The force sounds by itself, because a pad that never lifts off would be silent (ours, not the
 //! document's). Pulses push and never pull: a stroke of many would hold the body bent, which costs
@@ -167,7 +167,7 @@ impl Exciters {
     /// Takes the pulses of a stretch without their mean, N·s; false, and nothing written, where
     /// there are none.
     fn take_pulses(&mut self, by: &Excited<'_>, out: &mut [f64]) -> bool {
-        // SampleRange the steps of the absolute grid, so that it depends on no split into blocks.
+        // At the steps of the absolute grid, so that it depends on no split into blocks.
         if by.position.is_multiple_of(MAX_BLOCK as u64) && self.pulses_are_over(by.position) {
             self.pulse_mean = State::default();
         }

@@ -6,7 +6,7 @@ use super::block::VoiceBlock;
 use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
 
-/// Task of a fade's length that its turning takes.
+/// Share of a fade's length that its turning takes.
 const TURN: f64 = 0.2;
 
 /// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back.

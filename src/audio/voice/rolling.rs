@@ -21,7 +21,7 @@ const LAG: f64 = 0.8;
 pub(super) struct Rolling {
     /// Speed of slip and radius of what rolls, of the newest report; none while it slides.
     told: Option<(f64, Option<f64>)>,
-    /// Task of rolling at the last step of the grid, and at the next.
+    /// Share of rolling at the last step of the grid, and at the next.
     share: [f64; 2],
     /// Roughness of the ground under its last sample.
     roughness: f64,

@@ -23,7 +23,7 @@ pub(super) const BREAK_S: f64 = 0.25;
 const LATE_S: f64 = 0.06;
 /// Lateness that is the clocks' and not the network's or the frame's, s.
 const SLIGHTLY_LATE_S: f64 = 0.002;
-/// Task of a larger lateness that moves the mapping.
+/// Share of a larger lateness that moves the mapping.
 const FOLLOW: f64 = 0.05;
 /// Step by which the mapping creeps back with each early stamp, samples: a drift of 200 ppm at 60
 /// events/s.
@@ -200,13 +200,13 @@ impl Live {
         });
     }
 
-    /// SampleRange the end of a window: notes by how much a game is ahead.
+    /// At the end of a window: notes by how much a game is ahead.
     fn look_back(&self, tie: &mut Tie) {
         tie.least_lead = tie.window.least_lead.max(0.0);
         tie.ahead = tie.least_lead > self.max_lead;
     }
 
-    /// SampleRange the end of a window: follows another pace, if two windows in a row agree about
+    /// At the end of a window: follows another pace, if two windows in a row agree about
     /// it. Whether they do.
     fn weigh_pace(&mut self, tie: &mut Tie, time_s: f64, sample: f64) -> bool {
         let now = tie.latest.1;

@@ -309,7 +309,7 @@ impl Scene {
         self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
-    /// Placement of an impact on a body that has shapes.
+    /// Place of an impact on a body that has shapes.
     fn struck(&self, impact: &Impact) -> Option<StrikePlace> {
         let field = self.bodies.get(impact.body.0)?.field.as_ref()?;
         field.place(impact.at_m?, impact.direction)

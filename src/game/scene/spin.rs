@@ -24,7 +24,7 @@ pub(super) struct Spin {
 }
 
 impl Spin {
-    /// Placement of the last report as it was told.
+    /// Place of the last report as it was told.
     pub(super) fn uv(&self) -> Option<[f64; 2]> {
         self.uv
     }

@@ -100,7 +100,7 @@ impl Scene {
         event
     }
 
-    /// Placement of a contact on a body that has shapes: its own place counts before its surface's
+    /// Place of a contact on a body that has shapes: its own place counts before its surface's
     /// frame; none where both are missing.
     pub(super) fn touched(&self, event: &ContactEvent) -> Option<StrikePlace> {
         let (ContactEvent::Begin { contact, sample, .. } | ContactEvent::Moved { contact, sample, .. }) =
