@@ -7,7 +7,7 @@ use crate::audio::renderer::Renderer;
 use crate::files::contact_log::{ContactLog, LogError, LogEvent, LogLine, Names};
 use crate::files::wav::write_wav;
 use crate::game::scene::Scene;
-use crate::game::silence::SilentBecause;
+use crate::game::silence::SilenceReason;
 use crate::link::stats::Stats;
 use crate::link::tap::{NoTap, Tap};
 use crate::make::edit::Edits;
@@ -51,7 +51,7 @@ pub struct Render {
     /// The first event that was refused, and its game time, s.
     pub first_refused: Option<(f64, ReportError)>,
     /// Reasons against anything being heard or felt ([`Scene::why_silent`]).
-    pub why_silent: Vec<SilentBecause>,
+    pub why_silent: Vec<SilenceReason>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,
     /// By how much the peak limiters have turned down at most, dB.

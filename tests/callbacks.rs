@@ -5,7 +5,7 @@ use crate::common;
 
 use asperity::{
     ActuatorSettings, Body, BodyId, ChannelId, Config, ContactEvent, ContactId, ContactSample, Impact,
-    Material, SilentBecause, Stats, Stock,
+    Material, SilenceReason, Stats, Stock,
 };
 use common::game::{Game, TICK_S, block};
 use common::{SIDE_M, peak, rms};
@@ -51,7 +51,7 @@ impl Game {
         self.scene.stats()
     }
 
-    fn says(&self, what: impl Fn(&SilentBecause) -> bool) -> bool {
+    fn says(&self, what: impl Fn(&SilenceReason) -> bool) -> bool {
         self.scene.why_silent().iter().any(what)
     }
 }
@@ -152,7 +152,7 @@ fn no_mass_and_infinite_mass_are_refused_in_words() {
         let error = game.scene.report(0.0, ContactEvent::Impact(impact)).unwrap_err().to_string();
         assert!(error.contains("mass_kg"), "{error}");
     }
-    assert!(game.says(|because| matches!(because, SilentBecause::Refused { count: 4, .. })));
+    assert!(game.says(|because| matches!(because, SilenceReason::Refused { count: 4, .. })));
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn an_end_that_is_told_in_every_frame_harms_nothing_and_a_begin_that_never_came_
     let mut game = Game::live();
     let (heard, _) = game.run(60, |game, _| game.stroke(7, 0.1, false));
     assert_eq!(peak(&heard), 0.0);
-    assert!(game.says(|because| matches!(because, SilentBecause::Orphaned { .. })));
+    assert!(game.says(|because| matches!(because, SilenceReason::Orphaned { .. })));
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_controller_whose_end_is_lost_stops_within_half_a_second() {
     game.run(30, |game, tick| game.stroke(1, 0.1, tick == 0));
     let (_, felt) = game.run(60, |_, _| ());
     assert!(peak(&felt[..6 * TICK]) > 0.0 && peak(&felt[30 * TICK..]) < 1e-9);
-    assert!(game.says(|because| matches!(because, SilentBecause::Lapsed { count: 1, .. })));
+    assert!(game.says(|because| matches!(because, SilenceReason::Lapsed { count: 1, .. })));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use asperity::{
     Body, Config, ContactEvent, ContactId, ContactSample, Contradiction, Engine, Impact, Likely, Material,
-    Scene, SilentBecause, Stock, Surface, Touching, probe_by_name,
+    Scene, SilenceReason, Stock, Surface, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 use std::f64::consts::TAU;
@@ -119,15 +119,15 @@ fn reported(stroke: &Stroke, wraps: bool, mut also: impl FnMut(&mut Scene, f64))
 }
 
 /// What is told that no single report shows: times that stand, forces and blows.
-fn habits(scene: &Scene) -> Vec<SilentBecause> {
+fn habits(scene: &Scene) -> Vec<SilenceReason> {
     let mut told = scene.why_silent();
     told.retain(|reason| {
         matches!(
             reason,
-            SilentBecause::TimeStands { .. }
-                | SilentBecause::PressedTooHard { .. }
-                | SilentBecause::StruckEveryStep { .. }
-                | SilentBecause::NeverPressed
+            SilenceReason::TimeStands { .. }
+                | SilenceReason::PressedTooHard { .. }
+                | SilenceReason::StruckEveryStep { .. }
+                | SilenceReason::NeverPressed
         )
     });
     told
@@ -135,7 +135,7 @@ fn habits(scene: &Scene) -> Vec<SilentBecause> {
 
 fn contradictions(scene: &Scene) -> Vec<Contradiction> {
     let told = scene.why_silent().into_iter();
-    told.filter_map(|reason| if let SilentBecause::Contradicts(told) = reason { Some(told) } else { None })
+    told.filter_map(|reason| if let SilenceReason::Contradicts(told) = reason { Some(told) } else { None })
         .collect()
 }
 
@@ -376,13 +376,13 @@ fn a_time_that_stands_a_force_in_millinewtons_and_a_blow_at_every_step_are_told(
             };
             let silent = |_: &mut Scene, _: f64| ();
             let stands = habits(&reported(&with(|report| report.t = 0.0), true, silent));
-            assert!(matches!(stands[..], [SilentBecause::TimeStands { time_s: 0.0, .. }]), "{stands:?}");
+            assert!(matches!(stands[..], [SilenceReason::TimeStands { time_s: 0.0, .. }]), "{stands:?}");
             // A light touch in millinewtons is what a finger presses with; 0.3 N and more are told.
             let pressed = with(|report| report.force_n = 1e3 * report.force_n.max(0.3));
             let pressed = habits(&reported(&pressed, true, silent));
-            assert!(matches!(pressed[..], [SilentBecause::PressedTooHard { .. }]), "{pressed:?}");
+            assert!(matches!(pressed[..], [SilenceReason::PressedTooHard { .. }]), "{pressed:?}");
             let unpressed = habits(&reported(&with(|report| report.force_n = 0.0), true, silent));
-            assert_eq!(unpressed, [SilentBecause::NeverPressed]);
+            assert_eq!(unpressed, [SilenceReason::NeverPressed]);
             let mut body = None;
             let struck = reported(&with(|_| ()), true, |scene, t| {
                 let stock = || Body::stock(Stock::Plate, Material::WOOD, 0.2).unwrap();
@@ -391,7 +391,7 @@ fn a_time_that_stands_a_force_in_millinewtons_and_a_blow_at_every_step_are_told(
             });
             let struck = habits(&struck);
             let steps = whole.reports.len() as u64;
-            let expected = (steps >= 30).then_some(SilentBecause::StruckEveryStep { count: steps });
+            let expected = (steps >= 30).then_some(SilenceReason::StruckEveryStep { count: steps });
             assert_eq!(struck, expected.into_iter().collect::<Vec<_>>());
         }
     }

@@ -10,7 +10,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::load::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE};
 use asperity::offline::{self, Options, Render};
-use asperity::{Engine, Material, SilentBecause};
+use asperity::{Engine, Material, SilenceReason};
 use asperity_evidence::corpus::corpus;
 use common::{peak, rms};
 use std::path::Path;
@@ -142,7 +142,7 @@ fn a_limiter_that_takes_much_off_is_told_with_the_keys_that_mend_it() {
     };
     let told = |render: &Render| {
         render.why_silent.iter().find_map(|reason| match reason {
-            SilentBecause::TurnedDown { by_db } => Some((*by_db, reason.to_string())),
+            SilenceReason::TurnedDown { by_db } => Some((*by_db, reason.to_string())),
             _ => None,
         })
     };

@@ -5,8 +5,8 @@ use crate::common::{peak, rms};
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::{
-    Body, BodyId, ChannelId, ClippedBecause, ClockMode, Config, ContactEvent, ContactId, ContactSample,
-    Engine, Impact, LevelPolicy, Material, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
+    Body, BodyId, ChannelId, ClipReason, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
+    Impact, LevelPolicy, Material, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
 };
 use std::path::Path;
 use std::time::Instant;
@@ -355,7 +355,7 @@ fn what_clips_is_named_with_what_to_turn_and_by_how_much() {
     let hard = |id| ContactEvent::Impact(Impact { mass_kg: 0.3, speed_m_s: 2.0, ..Impact::on(id) });
     played.step(Some(hard(id)));
     let because = played.scene.why_clipped();
-    let ClippedBecause::Blows { body, by_db, strike_gain } = because[0] else { panic!("{because:?}") };
+    let ClipReason::Blows { body, by_db, strike_gain } = because[0] else { panic!("{because:?}") };
     println!("{}", because[0]);
     assert!(because.len() == 1 && body == id && by_db > 6.0);
     // What it says helps.
@@ -375,10 +375,7 @@ fn strokes_that_clip_are_named_with_their_surface() {
     let because = played.scene.why_clipped();
     println!("{}", because[0]);
     let told = because[0].to_string();
-    assert!(
-        matches!(because[0], ClippedBecause::Strokes { surface, .. } if surface == bricks),
-        "{because:?}"
-    );
+    assert!(matches!(because[0], ClipReason::Strokes { surface, .. } if surface == bricks), "{because:?}");
     assert!(
         ["relief_m", "Body::gain", "AudioBus::gain", "63.00 N"].iter().all(|word| told.contains(word)),
         "{told}"

@@ -4,7 +4,7 @@ use crate::common;
 
 use asperity::surface::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
 use asperity::surface::height_field::{
-    Beyond, HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, TouchKind,
+    Extension, HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, TouchKind,
     WavelengthBand,
 };
 use asperity::surface::height_map::{Extent, HeightMap};
@@ -43,7 +43,7 @@ fn count(calls: &AtomicU64) {
 /// Flat ground of loose grains that counts what is asked of it.
 struct Counting {
     calls: Arc<Calls>,
-    beyond: Beyond,
+    extension: Extension,
 }
 
 /// A change of a [`Counting`] source.
@@ -55,7 +55,7 @@ impl HeightField for Counting {
         count(&self.calls.properties);
         let band = WavelengthBand { shortest_m: 1e-3, longest_m: 2e-3 };
         let tip_law = Some(TipLaw::Spring { compliance_m_n: 2e-3, friction: 0.0 });
-        Properties { beyond: self.beyond, tip_law, ..Properties::of(band) }
+        Properties { extension: self.extension, tip_law, ..Properties::of(band) }
     }
 
     fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
@@ -132,9 +132,9 @@ fn wrappers() -> Vec<(&'static str, Wrap)> {
 }
 
 /// Strokes a surface for 512 samples; the calls, and the loudest sample.
-fn stroked(wrap: Wrap, beyond: Beyond) -> (Arc<Calls>, f64) {
+fn stroked(wrap: Wrap, extension: Extension) -> (Arc<Calls>, f64) {
     let calls = Arc::new(Calls::default());
-    let own = Box::new(Counting { calls: calls.clone(), beyond });
+    let own = Box::new(Counting { calls: calls.clone(), extension });
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let stylus = scene.add_probe(asperity::probe_by_name("stylus").unwrap()).unwrap();
     let mode = Mode { frequency_hz: 3000.0, decay_per_s: 200.0, amplitude: 1.0, phase_rad: 0.0 };
@@ -167,7 +167,7 @@ type Counter = fn(&Calls) -> &AtomicU64;
 
 #[test]
 fn a_source_gets_every_call_in_every_combination() {
-    for beyond in [Beyond::Same, Beyond::Fresh] {
+    for beyond in [Extension::Same, Extension::Fresh] {
         let (plain, _) = stroked(|own| own, beyond);
         for (name, wrap) in wrappers() {
             let (calls, loudest) = stroked(wrap, beyond);

@@ -6,7 +6,7 @@ use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
-use asperity::{Config, ContactBlock, Extent, Probe, SilentBecause, Surface, Tap, Wrap, probe_by_name};
+use asperity::{Config, ContactBlock, Extent, Probe, SilenceReason, Surface, Tap, Wrap, probe_by_name};
 use asperity_dsp::rng::Rng;
 use asperity_surface::height_map::HeightMap;
 use asperity_surface::raster::Raster;
@@ -250,7 +250,7 @@ fn a_heavy_stick_that_leaps_over_ribs_is_told_with_its_remedy_and_a_finger_is_no
         let config = Config { probe, ..si_config() };
         let ribs = common::grating(2e-3, 0.5e-3);
         let take = common::render(config, ribs, &stroke(SIDE_M, 0.2, force_n, 1.0), &Options::default());
-        (take.stats.blows, take.why_silent.iter().any(|told| matches!(told, SilentBecause::Leapt { .. })))
+        (take.stats.blows, take.why_silent.iter().any(|told| matches!(told, SilenceReason::Leapt { .. })))
     };
     let (blows, told) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
     println!("{blows} blows");
@@ -301,7 +301,7 @@ fn a_probe_thrown_off_the_crest_of_a_roof_presses_as_told_or_is_told() {
                 let config = Config { probe, ..si_config() };
                 let take = render_tapped(config, roofs, &log, &Options::default(), &mut mean);
                 let off = mean.contact_n / mean.pressed_n - 1.0;
-                let leapt = take.why_silent.iter().any(|told| matches!(told, SilentBecause::Leapt { .. }));
+                let leapt = take.why_silent.iter().any(|told| matches!(told, SilenceReason::Leapt { .. }));
                 let what = format!("{name}, roofs of {roof_m} m, {slope} m/m, {speed_m_s} m/s, {force_n} N");
                 println!("{what}: {:+.2} %, {} blows, told {leapt}", 100.0 * off, take.stats.blows);
                 assert!(off.abs() <= 0.01 || leapt, "{what}: {:+.2} % and no word", 100.0 * off);

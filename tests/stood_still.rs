@@ -7,7 +7,7 @@ use asperity::files::contact_log::{LogEvent, Names};
 use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::live::null_sink::NullSink;
 use asperity::offline::{self, Options};
-use asperity::{Config, ContactEvent, ContactSample, Engine, Impact, Material, Scene, SilentBecause};
+use asperity::{Config, ContactEvent, ContactSample, Engine, Impact, Material, Scene, SilenceReason};
 use asperity_dsp::rng::Rng;
 use common::game::{Game, block};
 use common::{SIDE_M, peak};
@@ -111,7 +111,7 @@ fn audio_that_comes_back_after_a_gap_does_not_bang() {
                     bangs.push(format!("{what}: {after:+.1} dB"));
                 }
                 let told = strikes.game.scene.why_silent().iter().any(
-                    |because| matches!(because, SilentBecause::Stale { count } if *count == stats.stale),
+                    |because| matches!(because, SilenceReason::Stale { count } if *count == stats.stale),
                 );
                 assert_eq!(told, strikes_a_second > 0, "{what}: {:?}", strikes.game.scene.why_silent());
                 assert!(strikes_a_second == 0 || stats.stale > 0, "{what}");
@@ -334,7 +334,7 @@ fn a_device_that_is_lost_and_comes_back_does_not_bang() {
         assert!(after <= 3.0, "each {strikes_every} ticks, {seconds} s: {after:+.1} dB");
         assert!(stale > 2, "{stale}");
         let told =
-            |because: &SilentBecause| matches!(because, SilentBecause::Stale { count } if *count == stale);
+            |because: &SilenceReason| matches!(because, SilenceReason::Stale { count } if *count == stale);
         assert!(scene.why_silent().iter().any(told), "{:?}", scene.why_silent());
     }
 }

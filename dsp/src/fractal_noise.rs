@@ -50,7 +50,7 @@ use crate::rng::Rng;
 use crate::simd::{Level, at_level};
 use cells::{KnownCell, Offset};
 
-pub use weights::{Missed, OctaveWeights, Relief, growth};
+pub use weights::{InterpolationError, OctaveWeights, Relief, growth};
 
 /// Number of octaves.
 pub const OCTAVES: usize = 12;

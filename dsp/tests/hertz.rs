@@ -350,14 +350,14 @@ fn reading_clears_the_ring_and_lets_no_denormal_through() {
 fn onsets_within_a_contact_add_only_what_is_harder() {
     let (mut merge, rate) = (OnsetMerge::default(), 44_100.0);
     let hit = |j| HertzPulse { impulse_n_s: j, contact_time_s: 4.0 / rate };
-    assert_eq!(merge.admit(hit(1.0), 100, 0.5, rate), Some(hit(1.0)));
-    assert_eq!(merge.admit(hit(0.7), 102, 0.0, rate), None);
-    let more = merge.admit(hit(1.5), 103, 0.0, rate).unwrap();
+    assert_eq!(merge.merge_onset(hit(1.0), 100, 0.5, rate), Some(hit(1.0)));
+    assert_eq!(merge.merge_onset(hit(0.7), 102, 0.0, rate), None);
+    let more = merge.merge_onset(hit(1.5), 103, 0.0, rate).unwrap();
     assert!((more.impulse_n_s - 0.5).abs() < 1e-12);
     // The harder hit prolongs the contact to 107; then a new one begins.
-    assert_eq!(merge.admit(hit(0.2), 106, 0.9, rate), None);
-    assert_eq!(merge.admit(hit(0.2), 107, 0.0, rate), Some(hit(0.2)));
-    assert_eq!(merge.admit(hit(f64::NAN), 108, 0.0, rate), None);
+    assert_eq!(merge.merge_onset(hit(0.2), 106, 0.9, rate), None);
+    assert_eq!(merge.merge_onset(hit(0.2), 107, 0.0, rate), Some(hit(0.2)));
+    assert_eq!(merge.merge_onset(hit(f64::NAN), 108, 0.0, rate), None);
 }
 
 #[test]

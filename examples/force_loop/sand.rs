@@ -119,7 +119,7 @@ fn furrow(folder: &Path) -> Result<(), Failed> {
             normal_force_n: 3.0,
             landed: frame == 0,
         };
-        sand.tell(pose);
+        sand.set_pose(pose);
         sand.frame();
     }
     let along = |sand: &SandSimulation| -> Points {

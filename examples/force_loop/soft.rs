@@ -95,7 +95,7 @@ fn tiles_drawn() -> (Vec<[f64; 2]>, usize) {
         if t < 5.0 {
             let position_m = [0.125 + 0.07 * (3.1 * t).sin(), 0.125 + 0.06 * (4.3 * t).cos()];
             let velocity_m_s = [0.217 * (3.1 * t).cos(), -0.258 * (4.3 * t).sin()];
-            sand.tell(Pose { contact: 0, position_m, velocity_m_s, normal_force_n: 3.0, landed: false });
+            sand.set_pose(Pose { contact: 0, position_m, velocity_m_s, normal_force_n: 3.0, landed: false });
         }
         sand.frame();
         let grid = sand.grid();

@@ -9,7 +9,7 @@ use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::ContactKey;
 use crate::resource::body::{BodySlot, RenderArgs};
-use crate::resource::body_rub::RubAsked;
+use crate::resource::body_rub::FrictionInput;
 use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
@@ -248,7 +248,7 @@ impl BodySeat {
 
     /// A contact rubs the body of that name; false where another one does, or nobody can. A body
     /// that has gone is rubbed in vain.
-    pub(crate) fn rub(&mut self, id: BodyId, asked: &RubAsked<'_>) -> bool {
+    pub(crate) fn rub(&mut self, id: BodyId, asked: &FrictionInput<'_>) -> bool {
         self.current.as_mut().filter(|_| self.id == Some(id)).is_none_or(|body| body.rub(asked))
     }
 

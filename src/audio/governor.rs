@@ -26,10 +26,10 @@
 //!
 //! *Its own lateness only.* A block may be late because the host did something else, and leaving
 //! work out then costs sound and wins nothing. So what counts is the engine's own share, the median
-//! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`LATE`] while that
-//! share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a
-//! share of 1 % up to 15 late blocks in a row change nothing; work that does not fit is answered
-//! after 16 blocks.
+//! of the last [`MEDIAN_OF`] reports: the level rises with every report above [`OVERLOAD_SHARE`]
+//! while that share is above [`HEADROOM_SHARE`], and falls by one in [`RECOVERY_S`] in which it is
+//! not. At a share of 1 % up to 15 late blocks in a row change nothing; work that does not fit is
+//! answered after 16 blocks.
 //!
 //! The level is a function of the reports and of the samples rendered alone: where no load is
 //! reported, as offline, nothing is ever left out and every bit repeats.
@@ -37,9 +37,9 @@
 use crate::resource::bank::MODE_LEVELS;
 
 /// Share of the period from which a block counts as late.
-pub(crate) const LATE: f32 = 0.8;
+pub(crate) const OVERLOAD_SHARE: f32 = 0.8;
 /// Share of the period below which there is room for more work.
-pub(crate) const EASY: f32 = 0.5;
+pub(crate) const HEADROOM_SHARE: f32 = 0.5;
 /// Time that the load must be easy for one level back, s.
 pub(crate) const RECOVERY_S: f64 = 0.5;
 
@@ -92,8 +92,8 @@ pub(crate) struct Governor {
     recovery_samples: u64,
     /// Work that was there when contacts first had to go.
     work: Work,
-    /// True for each of the last reports that was above [`EASY`]; one bit a report, the newest
-    /// lowest.
+    /// True for each of the last reports that was above [`HEADROOM_SHARE`]; one bit a report, the
+    /// newest lowest.
     busy: u32,
 }
 
@@ -106,11 +106,11 @@ impl Governor {
 
     /// Takes the share of its period that the last block took; `work` counts where it is
     /// late.
-    pub(crate) fn hear(&mut self, load: f32, position: u64, work: Work) {
+    pub(crate) fn update(&mut self, load: f32, position: u64, work: Work) {
         if !self.enabled {
             return;
         }
-        self.busy = (self.busy << 1 | u32::from(load > EASY)) & ((1 << MEDIAN_OF) - 1);
+        self.busy = (self.busy << 1 | u32::from(load > HEADROOM_SHARE)) & ((1 << MEDIAN_OF) - 1);
         if !self.is_busy() {
             if position.saturating_sub(self.easy_since) >= self.recovery_samples {
                 self.level = self.level.saturating_sub(1);
@@ -119,9 +119,9 @@ impl Governor {
             return;
         }
         self.easy_since = position;
-        if load > LATE {
+        if load > OVERLOAD_SHARE {
             // Twice as late, twice as fast.
-            let rise = if load > 2.0 * LATE { 2 } else { 1 };
+            let rise = if load > 2.0 * OVERLOAD_SHARE { 2 } else { 1 };
             if self.level <= self.modes_first {
                 self.work = work;
             }
@@ -133,7 +133,8 @@ impl Governor {
         }
     }
 
-    /// Tests whether the median of the last reports is above [`EASY`]: more than half of them are.
+    /// Tests whether the median of the last reports is above [`HEADROOM_SHARE`]: more than half of
+    /// them are.
     fn is_busy(&self) -> bool {
         2 * self.busy.count_ones() as usize > MEDIAN_OF
     }
@@ -174,7 +175,7 @@ mod tests {
     fn working(work: Work, reports: impl IntoIterator<Item = f32>) -> Governor {
         let mut governor = Governor::new(true, RATE);
         for (block, load) in reports.into_iter().enumerate() {
-            governor.hear(load, 64 * block as u64, work);
+            governor.update(load, 64 * block as u64, work);
         }
         governor
     }
@@ -267,7 +268,7 @@ mod tests {
     fn a_load_that_is_no_number_changes_nothing() {
         assert_eq!(after([f32::NAN, f32::NEG_INFINITY]).level, 0);
         let mut off = Governor::new(false, RATE);
-        off.hear(5.0, 0, RINGING);
+        off.update(5.0, 0, RINGING);
         assert_eq!(off.level, 0);
     }
 }

@@ -16,13 +16,13 @@ mod voices;
 
 use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
-use crate::audio::governor::{Governor, LATE, Work};
+use crate::audio::governor::{Governor, OVERLOAD_SHARE, Work};
 use crate::audio::index_set::IndexSet;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Voice};
+use crate::audio::voice::{Scratch, Voice, VoiceState};
 use crate::link::message::{Message, Retired};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
@@ -217,8 +217,8 @@ impl Renderer {
     /// out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
-        let work = if load > LATE { self.work() } else { Work::default() };
-        self.governor.hear(load, self.position, work);
+        let work = if load > OVERLOAD_SHARE { self.work() } else { Work::default() };
+        self.governor.update(load, self.position, work);
         for _ in self.contact_limit()..self.sounding_count() {
             Counters::add(&self.counters.shed, 1);
             self.silence_least();
@@ -312,18 +312,18 @@ impl Renderer {
     fn tidy(&mut self) {
         self.show_levels();
         self.outlets.tidy(&mut self.to_game);
-        self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
+        self.voices_used.retain(|voice| self.voices[voice].phase != VoiceState::Free);
         for at in 0..self.voices_used.len() {
             let index = self.voices_used.at(at);
             let voice = &self.voices[index];
             let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
-            if voice.phase == Phase::Sounding && lapsed {
+            if voice.phase == VoiceState::Sounding && lapsed {
                 Counters::add(&self.counters.lapsed, 1);
                 self.silence(index, false);
             }
         }
         self.seats_used.retain(|index| {
-            let sounds = |voice: usize| self.voices[voice].phase != Phase::Free;
+            let sounds = |voice: usize| self.voices[voice].phase != VoiceState::Free;
             let in_use = || self.voices_used.iter().any(|v| self.voices[v].surface == index && sounds(v));
             self.seats[index].tidy(self.position, in_use, &mut self.to_game);
             !self.seats[index].is_empty()

@@ -12,9 +12,9 @@ use crate::resource::overlay::{BetweenQuery, NoiseQuery, Room, ShortWaves, TileC
 use crate::resource::stroking::Stroking;
 use crate::resource::surface::SurfaceSlot;
 
-use asperity_dsp::fractal_noise::{FractalNoise, Missed, NoisePath, OCTAVES};
+use asperity_dsp::fractal_noise::{FractalNoise, InterpolationError, NoisePath, OCTAVES};
 use asperity_surface::height_field::{
-    Finish, HeightField, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, hollow_m,
+    Finish, HeightField, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, local_concavity_m,
 };
 use asperity_surface::height_map::FRICTION;
 use std::any::Any;
@@ -218,14 +218,14 @@ impl Seat {
     }
 
     /// Height of the ground about a contact over that under it, m, for a tip that rides on it.
-    pub(crate) fn hollow_m(
+    pub(crate) fn local_concavity_m(
         &mut self,
         touch: &Touch,
         (reach_m, tip_radius_m): (f64, f64),
         room: &mut SurfaceBlock,
     ) -> f64 {
         match self.current.as_deref_mut().filter(|slot| slot.properties.is_stateless) {
-            Some(slot) => hollow_m(&mut *slot.surface.source, touch, (reach_m, tip_radius_m), room),
+            Some(slot) => local_concavity_m(&mut *slot.surface.source, touch, (reach_m, tip_radius_m), room),
             None => 0.0,
         }
     }
@@ -239,13 +239,13 @@ impl Seat {
         footprints_m: [f64; 2],
         left_m: f64,
         tip_radius_m: f64,
-    ) -> Missed {
+    ) -> InterpolationError {
         match (&mut self.current, &self.previous) {
             (Some(slot), None) if slot.surface.micro_relief_m > 0.0 => {
                 slot.overlay.tune(tip_radius_m);
                 slot.overlay.short_waves().missed(roughness, footprints_m, left_m)
             }
-            _ => Missed { all_m: 0.0, octave: OCTAVES },
+            _ => InterpolationError { all_m: 0.0, octave: OCTAVES },
         }
     }
 
@@ -312,7 +312,7 @@ impl SurfaceSlot {
             out.answer.clear();
             out.power.kind = PowerKind::Full;
         }
-        let fills = surface.micro_relief_m > 0.0 && self.overlay.minds_relief();
+        let fills = surface.micro_relief_m > 0.0 && self.overlay.depends_on_source_relief();
         let path = &PathBlock {
             heights_only: hard && !all && surface.compliance_m_n == 0.0,
             full_power_m2: fills.then(|| self.overlay.fills_m2()),

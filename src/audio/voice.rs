@@ -48,7 +48,7 @@ use skin::{ContactSkin, Drag};
 
 /// State of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Phase {
+pub(crate) enum VoiceState {
     Free,
     Sounding,
     /// Going silent within `left` samples.
@@ -62,7 +62,7 @@ pub(crate) struct Voice {
     pub(crate) contact: ContactId,
     pub(crate) surface: usize,
     pub(crate) role: Binding,
-    pub(crate) phase: Phase,
+    pub(crate) phase: VoiceState,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
     /// True where it fades because the game said so, and not because it lapsed or was stolen.
@@ -106,7 +106,7 @@ impl Voice {
             contact: ContactId(0),
             surface: 0,
             role: Binding::default(),
-            phase: Phase::Free,
+            phase: VoiceState::Free,
             begun: 0,
             refreshed: 0,
             ended: false,
@@ -139,7 +139,7 @@ impl Voice {
 
     /// Tests whether there is anything to render but rest.
     pub(crate) fn works(&self) -> bool {
-        self.phase != Phase::Free && !self.asleep
+        self.phase != VoiceState::Free && !self.asleep
     }
 
     /// Something changed under a resting contact.
@@ -152,8 +152,8 @@ impl Voice {
         let [u, v] = self.path.last.velocity_m_s;
         let speed_m_s = (u * u + v * v).sqrt();
         match self.phase {
-            Phase::Free | Phase::Fading { .. } => -1.0,
-            Phase::Sounding => self.role.importance * self.path.last.normal_force_n * (1e-3 + speed_m_s),
+            VoiceState::Free | VoiceState::Fading { .. } => -1.0,
+            VoiceState::Sounding => self.role.importance * self.path.last.normal_force_n * (1e-3 + speed_m_s),
         }
     }
 
@@ -192,8 +192,8 @@ impl Voice {
     /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it.
     fn until_silent<'a>(&self, stretch: Segment<'a>) -> Segment<'a> {
         match self.phase {
-            Phase::Fading { left } => Segment { n: stretch.n.min(left as usize), ..stretch },
-            Phase::Free | Phase::Sounding => stretch,
+            VoiceState::Fading { left } => Segment { n: stretch.n.min(left as usize), ..stretch },
+            VoiceState::Free | VoiceState::Sounding => stretch,
         }
     }
 
@@ -202,7 +202,7 @@ impl Voice {
     fn touch(&mut self, stretch: Segment<'_>, seat: &mut Seat) {
         if stretch.is_on_grid() {
             self.reaction = seat.touch(&self.touch_at(stretch.position));
-            self.asleep &= !self.reaction.stirs;
+            self.asleep &= !self.reaction.wakes_contact;
         }
     }
 
@@ -308,7 +308,7 @@ impl Voice {
 
     /// State in which the stretch leaves the contact.
     fn finish(&mut self, stretch: Segment<'_>, scratch: &Scratch) {
-        if self.phase == Phase::Free {
+        if self.phase == VoiceState::Free {
             return;
         }
         self.path.last = scratch.points[stretch.n - 1];

@@ -15,7 +15,7 @@ pub(crate) const TOLD_DB: f64 = 0.5;
 /// A reason why more leaves than full scale holds. Its text says what to turn, and by how much.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ClippedBecause {
+pub enum ClipReason {
     /// Impacts on a body are too hard for its level.
     #[error(
         "impacts on body {body} peak {by_db:.0} dB over full scale; let its strike_gain be {strike_gain:.2e} \
@@ -56,7 +56,7 @@ pub enum ClippedBecause {
     },
 }
 
-impl ClippedBecause {
+impl ClipReason {
     /// By how much it is over full scale, dB.
     #[must_use]
     pub fn by_db(&self) -> f64 {
@@ -66,7 +66,7 @@ impl ClippedBecause {
     }
 }
 
-impl ClippedBecause {
+impl ClipReason {
     /// Peak of a blow that outlasts the reference strike, which is lower: at most what has left.
     pub(crate) fn hold(&mut self, most_db: f64) {
         if let Self::Blows { by_db, strike_gain, .. } = self

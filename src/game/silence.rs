@@ -23,7 +23,7 @@ const LIMITED_DB: u64 = 12;
 /// A reason why less is heard or felt than was reported. Its text says what would be right.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum SilentBecause {
+pub enum SilenceReason {
     /// The audio half has rendered nothing yet.
     #[error("nothing was rendered; call Renderer::render from the audio callback")]
     NothingRendered,
@@ -268,66 +268,66 @@ impl Reported {
     }
 
     /// Reasons against sound, the likeliest first.
-    pub(crate) fn why_silent(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
+    pub(crate) fn why_silent(&self, stats: &Stats, config: &Config) -> Vec<SilenceReason> {
         let mut because = self.lost(stats, config);
         if self.accepted == 0 && because.is_empty() {
-            because.push(SilentBecause::NothingReported);
+            because.push(SilenceReason::NothingReported);
         }
         if stats.position == 0 {
-            because.insert(0, SilentBecause::NothingRendered);
+            because.insert(0, SilenceReason::NothingRendered);
         }
         let mut say = |holds: bool, reason| {
             if holds {
                 because.push(reason);
             }
         };
-        say(stats.limiter_db > LIMITED_DB, SilentBecause::TurnedDown { by_db: stats.limiter_db });
-        say(config.audio.iter().all(|bus| bus.gain == 0.0), SilentBecause::AudioGainZero);
-        say(self.contacts + self.impacts > 0 && self.ringing == 0, SilentBecause::NothingRings);
-        say(self.contacts > 0 && !self.pressed, SilentBecause::NeverPressed);
+        say(stats.limiter_db > LIMITED_DB, SilenceReason::TurnedDown { by_db: stats.limiter_db });
+        say(config.audio.iter().all(|bus| bus.gain == 0.0), SilenceReason::AudioGainZero);
+        say(self.contacts + self.impacts > 0 && self.ringing == 0, SilenceReason::NothingRings);
+        say(self.contacts > 0 && !self.pressed, SilenceReason::NeverPressed);
         let strokes_only = self.contacts > 0 && self.impacts == 0;
-        say(strokes_only && !self.moved && !self.landed, SilentBecause::NeverMoved);
+        say(strokes_only && !self.moved && !self.landed, SilenceReason::NeverMoved);
         let Self { slips, .. } = self;
-        because.extend(slips.stands().map(|(count, time_s)| SilentBecause::TimeStands { count, time_s }));
+        because.extend(slips.stands().map(|(count, time_s)| SilenceReason::TimeStands { count, time_s }));
         let too_hard = slips.too_hard();
-        because.extend(too_hard.map(|(count, force_n)| SilentBecause::PressedTooHard { count, force_n }));
-        because.extend(slips.at_every_step().map(|count| SilentBecause::StruckEveryStep { count }));
+        because.extend(too_hard.map(|(count, force_n)| SilenceReason::PressedTooHard { count, force_n }));
+        because.extend(slips.at_every_step().map(|count| SilenceReason::StruckEveryStep { count }));
         because
     }
 
     /// Reports that did not arrive.
-    fn lost(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
+    fn lost(&self, stats: &Stats, config: &Config) -> Vec<SilenceReason> {
         let mut because = Vec::new();
         if let Some(last) = self.last_refusal {
             let of = self.accepted + stats.refused + stats.dropped;
-            because.push(SilentBecause::Refused { count: stats.refused, of, last });
+            because.push(SilenceReason::Refused { count: stats.refused, of, last });
         }
         let ahead_s =
             self.newest.samples() / config.inner_rate_hz() - stats.position as f64 / config.sample_rate_hz;
         if ahead_s > FAR_AHEAD_S {
-            because.push(SilentBecause::AheadOfAudio { ahead_s });
+            because.push(SilenceReason::AheadOfAudio { ahead_s });
         }
         let counted = [
-            SilentBecause::Dropped { count: stats.dropped },
-            SilentBecause::Stale { count: stats.stale },
-            SilentBecause::Orphaned { count: stats.orphaned },
-            SilentBecause::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
-            SilentBecause::Stolen { count: stats.stolen, limit: config.max_contacts },
-            SilentBecause::Quarantined { count: stats.quarantined },
-            SilentBecause::Held { count: stats.held },
-            SilentBecause::Shortened {
+            SilenceReason::Dropped { count: stats.dropped },
+            SilenceReason::Stale { count: stats.stale },
+            SilenceReason::Orphaned { count: stats.orphaned },
+            SilenceReason::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
+            SilenceReason::Stolen { count: stats.stolen, limit: config.max_contacts },
+            SilenceReason::Quarantined { count: stats.quarantined },
+            SilenceReason::Held { count: stats.held },
+            SilenceReason::Shortened {
                 count: stats.shortened + stats.shortened_collisions,
                 longest_s: LONGEST_CONTACT_S,
             },
-            SilentBecause::Leapt { count: stats.blows },
-            SilentBecause::Shed { count: stats.shed },
+            SilenceReason::Leapt { count: stats.blows },
+            SilenceReason::Shed { count: stats.shed },
         ];
         because.extend(counted.into_iter().filter(|reason| reason.count() > 0));
         because
     }
 }
 
-impl SilentBecause {
+impl SilenceReason {
     /// Number of times that it happened, 1 for a contradiction; 0 for what is a state.
     #[must_use]
     pub fn count(&self) -> u64 {

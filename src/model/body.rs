@@ -13,7 +13,7 @@ pub(crate) type Sends = [Option<(usize, f64)>; MAX_SENDS];
 /// A body, ready to be added to a scene.
 ///
 /// ```
-/// use asperity::{AudioBus, Body, Config, Engine, Material, ModalModel, Mode};
+/// use asperity::{AudioBus, Body, BusId, Config, Engine, Material, ModalModel, Mode};
 ///
 /// let config = Config { audio: vec![AudioBus::default(); 2], ..Config::default() };
 /// let Engine { mut scene, .. } = config.build()?;

@@ -9,7 +9,7 @@ use asperity_dsp::limits;
 use asperity_dsp::stick_slip::Friction;
 use asperity_surface::footprint::{self, footprint_radius_m};
 use asperity_surface::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, Touch, TouchKind,
+    Extension, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, Touch, TouchKind,
 };
 use asperity_surface::height_map::{Extent, FRICTION, HeightMap, MapError};
 #[cfg(feature = "image")]
@@ -366,9 +366,9 @@ impl Surface {
     /// Distance that the path stage may unwrap by, m.
     pub(crate) fn wrap_period_m(&self) -> [f64; 2] {
         let tile_m = [self.width_m, self.height_m];
-        match self.properties().beyond {
-            Beyond::Same | Beyond::Fresh if self.wraps => tile_m,
-            Beyond::Mirrored if self.wraps => tile_m.map(|side_m| 2.0 * side_m),
+        match self.properties().extension {
+            Extension::Same | Extension::Fresh if self.wraps => tile_m,
+            Extension::Mirrored if self.wraps => tile_m.map(|side_m| 2.0 * side_m),
             _ => [f64::INFINITY; 2],
         }
     }
@@ -376,7 +376,7 @@ impl Surface {
     /// Surface with a source that repeats, if its coordinates wrap.
     pub(crate) fn tiled(mut self) -> Self {
         let tile_m = [self.width_m, self.height_m];
-        if self.wraps && self.properties().beyond == Beyond::Fresh {
+        if self.wraps && self.properties().extension == Extension::Fresh {
             self.source = Box::new(Tiled::new(self.source, tile_m));
         }
         self

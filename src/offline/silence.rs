@@ -4,7 +4,7 @@
 use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine};
 use crate::files::scene_file::SceneFile;
 use crate::offline::Render;
-use crate::{Excitation, SilentBecause, SurfaceId};
+use crate::{Excitation, SilenceReason, SurfaceId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Audio peaks below this are silence: −120 dB of full scale.
@@ -40,7 +40,7 @@ impl Rendered<'_> {
         let still = still.count() as u64;
         // A speed below 0 counts as 0, which is told by itself.
         let own =
-            |reason: &&SilentBecause| matches!(reason, SilentBecause::Held { count } if *count <= still);
+            |reason: &&SilenceReason| matches!(reason, SilenceReason::Held { count } if *count <= still);
         let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0 && !own(reason));
         let mut told: Vec<String> = lost.map(|reason| singular(self.in_words(reason))).collect();
         told.extend(first_s.map(|t| {
@@ -171,15 +171,15 @@ impl Rendered<'_> {
         if !mine.is_empty() && mine.iter().all(|hand| hand.gain == Some(0.0)) {
             return "\"gain\" is 0 in every begin and impact that it feels; raise it".to_owned();
         }
-        let heard_only = [SilentBecause::AudioGainZero, SilentBecause::NothingRings];
+        let heard_only = [SilenceReason::AudioGainZero, SilenceReason::NothingRings];
         let otherwise = "nothing moved the skin by a nanometre; press harder (normal_force_n), move faster, or give the surface relief \
                          (relief_m, micro_relief_m)";
         self.because(&heard_only, otherwise)
     }
 
-    fn because(&self, but: &[SilentBecause], otherwise: &str) -> String {
-        let counts = |reason: &&SilentBecause| {
-            use SilentBecause::{Contradicts, PressedTooHard, StruckEveryStep, TurnedDown};
+    fn because(&self, but: &[SilenceReason], otherwise: &str) -> String {
+        let counts = |reason: &&SilenceReason| {
+            use SilenceReason::{Contradicts, PressedTooHard, StruckEveryStep, TurnedDown};
             !but.contains(reason)
                 && !matches!(
                     reason,
@@ -188,8 +188,8 @@ impl Rendered<'_> {
         };
         let because = || self.render.why_silent.iter().filter(counts);
         // What was lost is told by itself.
-        let is_state = |reason: &&SilentBecause| {
-            reason.count() == 0 || matches!(reason, SilentBecause::TimeStands { .. })
+        let is_state = |reason: &&SilenceReason| {
+            reason.count() == 0 || matches!(reason, SilenceReason::TimeStands { .. })
         };
         let states = because().filter(is_state);
         let words: Vec<String> = states.map(|reason| self.in_words(reason)).collect();
@@ -228,23 +228,23 @@ impl Rendered<'_> {
     }
 
     /// A reason in the words of scene files and logs.
-    fn in_words(&self, reason: &SilentBecause) -> String {
+    fn in_words(&self, reason: &SilenceReason) -> String {
         let Self { log, render, .. } = self;
         match reason {
-            SilentBecause::Refused { count, of, .. } => match render.first_refused {
+            SilenceReason::Refused { count, of, .. } => match render.first_refused {
                 Some((time_s, refused)) => {
                     format!("{count} of {of} events were refused, the first at t = {time_s} s: {refused}")
                 }
                 None => reason.to_string(),
             },
-            SilentBecause::Orphaned { count } => match first_stray(log) {
+            SilenceReason::Orphaned { count } => match first_stray(log) {
                 Some((time_s, contact)) => format!(
                     "{count} events speak of a contact that is not there, the first of contact {contact} at t = {time_s} s; write \
                      its \"begin\" before, with the same number"
                 ),
                 None => format!("{count} events speak of contacts that were refused or silenced"),
             },
-            SilentBecause::Lapsed { count, timeout_s } => {
+            SilenceReason::Lapsed { count, timeout_s } => {
                 let first = first_gap(log, *timeout_s).map_or_else(String::new, |(time_s, contact)| {
                     format!(", the first contact {contact} after t = {time_s} s")
                 });
@@ -253,18 +253,18 @@ impl Rendered<'_> {
                      often, and an \"end\" where a contact ends; t is in seconds"
                 )
             }
-            SilentBecause::Stolen { count, limit } => format!(
+            SilenceReason::Stolen { count, limit } => format!(
                 "{count} contacts were silenced because more than {limit} sounded at once; write an \"end\" for those that are over"
             ),
-            SilentBecause::Quarantined { count } => format!(
+            SilenceReason::Quarantined { count } => format!(
                 "{count} samples were quarantined: a height more than 20 m from zero, a force beyond 1e4 N, or a probe that was lost; check \
                  relief_m, scale, normal_force_n and [probe]"
             ),
-            SilentBecause::NothingReported => {
+            SilenceReason::NothingReported => {
                 "the log holds no event; write a \"begin\" and moves, or an \"impact\"".to_owned()
             }
-            SilentBecause::AudioGainZero => "gain under [audio] is 0; raise it".to_owned(),
-            SilentBecause::NothingRings => {
+            SilenceReason::AudioGainZero => "gain under [audio] is 0; raise it".to_owned(),
+            SilenceReason::NothingRings => {
                 let touched = self.touched();
                 let mut bodies = self.file.bodies.iter().filter(|body| touched.contains(&*body.name));
                 if let Some(body) = bodies.find(|body| body.stock.is_some()) {
@@ -277,7 +277,7 @@ impl Rendered<'_> {
                 "nothing touched has modes; write body = \"NAME\" in [[surface]] and modes = \"FILE\" in [[body]]"
                     .to_owned()
             }
-            SilentBecause::Contradicts(contradiction) => {
+            SilenceReason::Contradicts(contradiction) => {
                 let name =
                     self.surfaces.iter().find(|(_, id)| *id == contradiction.surface()).map(|(name, _)| name);
                 let several = self.file.surfaces.len() > 1;

@@ -25,12 +25,12 @@ pub(crate) fn loudness(force_n: f64) -> f64 {
     libm::cbrt(within(force_n))
 }
 
-/// Loudness where the ground bends over that on a plane; `hollow_m` says how much higher the ground
-/// lies at a reach.
-pub(crate) fn nestling(tip_radius_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> f64 {
+/// Loudness where the ground bends over that on a plane; `local_concavity_m` says how much higher
+/// the ground lies at a reach.
+pub(crate) fn nestling(tip_radius_m: f64, local_concavity_m: impl FnOnce(f64) -> f64) -> f64 {
     let radius_m = if tip_radius_m > 0.0 { tip_radius_m } else { FINGERTIP_RADIUS_M };
     let reach_m = REACH * radius_m;
-    let mean_curvature_per_m = 2.0 * hollow_m(reach_m) / (reach_m * reach_m);
+    let mean_curvature_per_m = 2.0 * local_concavity_m(reach_m) / (reach_m * reach_m);
     libm::cbrt((1.0 - radius_m * mean_curvature_per_m).clamp(CLOSENESS.0, CLOSENESS.1)).recip()
 }
 

@@ -8,7 +8,7 @@ use crate::resource::bank::{
     Bank, ContactKey, LONGEST_CONTACT_S, MODE_LEVELS, SheddingLevels, first_samples,
 };
 use crate::resource::body_field::{BodyField, FIELD_INPUTS};
-use crate::resource::body_rub::{BodyRub, RubAsked};
+use crate::resource::body_rub::{BodyRub, FrictionInput};
 use crate::resource::bursts::Bursts;
 use crate::resource::diffuse::DiffuseSeat;
 use crate::resource::impulse_ring::ImpulseRing;
@@ -259,7 +259,7 @@ impl BodySlot {
     }
 
     /// A contact rubs during the present stretch; false where another one does, or none can.
-    pub(crate) fn rub(&mut self, asked: &RubAsked<'_>) -> bool {
+    pub(crate) fn rub(&mut self, asked: &FrictionInput<'_>) -> bool {
         let field = self.field.as_ref();
         self.rub.as_mut().is_some_and(|rub| rub.ask(asked, field))
     }

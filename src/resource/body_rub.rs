@@ -36,7 +36,7 @@ const SPEED: GroupOptions = GroupOptions { impulse_kernel_compensation: false, t
 const STILL: Sweep = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s: 0.0 };
 
 /// Rubbing of a contact during a stretch.
-pub(crate) struct RubAsked<'a> {
+pub(crate) struct FrictionInput<'a> {
     pub(crate) owner: ContactKey,
     /// Place, and direction along the body.
     pub(crate) spot: StrikePoint,
@@ -131,7 +131,7 @@ impl BodyRub {
     }
 
     /// A contact rubs during the present stretch; false where another one does.
-    pub(crate) fn ask(&mut self, asked: &RubAsked<'_>, field: Option<&BodyField>) -> bool {
+    pub(crate) fn ask(&mut self, asked: &FrictionInput<'_>, field: Option<&BodyField>) -> bool {
         if self.owner.is_some_and(|owner| owner != asked.owner) {
             return false;
         }

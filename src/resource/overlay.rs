@@ -255,7 +255,7 @@ impl Overlay {
     /// below its band.
     pub(crate) fn short_waves(&self) -> &OctaveWeights {
         let Tip { below, all, .. } = &self.tips[self.now];
-        if self.minds_relief() { below } else { all }
+        if self.depends_on_source_relief() { below } else { all }
     }
 
     /// Power of a source's relief that leaves no room for the noise's long waves, m².
@@ -264,7 +264,7 @@ impl Overlay {
     }
 
     /// Tests whether the source's own relief matters.
-    pub(crate) fn minds_relief(&self) -> bool {
+    pub(crate) fn depends_on_source_relief(&self) -> bool {
         self.longest_m.is_finite()
     }
 

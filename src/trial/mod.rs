@@ -134,7 +134,7 @@ fn content(surface: &mut Surface) -> Result<DefaultHasher, AddError> {
     let finish = (size_m, wraps, strike_position, micro_relief_m, outer_scale_m, friction);
     let Surface { compliance_m_n, excitation, stick_slip, frame, .. } = *surface;
     let rest = (compliance_m_n, excitation, stick_slip, frame);
-    let source = (properties.band, properties.reach_m, properties.beyond);
+    let source = (properties.band, properties.reach_m, properties.extension);
     format!("{finish:?} {rest:?} {source:?}").hash(&mut hasher);
     Ok(hasher)
 }

@@ -117,7 +117,7 @@ fn sand_frame(c: &mut Criterion) {
             frame += 1;
             let position_m = [0.5 + 0.25 * (1.1 * t).sin(), 0.5 + 0.2 * (2.3 * t).cos()];
             let velocity_m_s = [0.275 * (1.1 * t).cos(), -0.46 * (2.3 * t).sin()];
-            sand.tell(Pose { contact: 0, position_m, velocity_m_s, normal_force_n: 5.0, landed: false });
+            sand.set_pose(Pose { contact: 0, position_m, velocity_m_s, normal_force_n: 5.0, landed: false });
             sand.frame();
         });
     });

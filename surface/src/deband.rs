@@ -90,12 +90,13 @@ fn smooth_tile(
     result: &mut Raster,
 ) -> bool {
     let reach = 3 * radius;
-    let beyond = |of: &Range<usize>, len: usize, margins: usize| -> Vec<usize> {
+    let extension = |of: &Range<usize>, len: usize, margins: usize| -> Vec<usize> {
         let margin = (margins * reach) as i64;
         (of.start as i64 - margin..of.end as i64 + margin).map(|i| wrap.index(i, len)).collect()
     };
     let cut = |margins: usize| {
-        let (columns, rows) = (beyond(&columns, map.width, margins), beyond(&rows, map.height, margins));
+        let (columns, rows) =
+            (extension(&columns, map.width, margins), extension(&rows, map.height, margins));
         Raster::from_fn(columns.len(), rows.len(), |x, y| map.at(columns[x], rows[y]))
     };
     let once = smooth(cut(3), radius);

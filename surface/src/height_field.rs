@@ -24,7 +24,7 @@ pub const NO_TOUCH_N: f64 = 1e-6;
 
 /// Continuation of a source beyond one tile: what texture coordinates that wrap mean on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Beyond {
+pub enum Extension {
     /// Repeated, or relief that does not belong to places: a jump by a tile is no movement.
     /// Positions run on beyond the tile, so a source whose period does not divide it goes on
     /// smoothly and is another place in the next lap.
@@ -46,14 +46,14 @@ pub struct Properties {
     /// Largest distance of its heights from zero, metres; 0 if it cannot tell.
     pub reach_m: f64,
     /// Continuation beyond a tile.
-    pub beyond: Beyond,
+    pub extension: Extension,
     /// True where it is hard everywhere, and [`HeightField::sample`] fills every entry of a block
     /// besides slopes that are not read: friction, roughness, compliance and answer too. The engine
     /// then fills nothing before it and lets nothing give way.
     pub is_rigid: bool,
     /// True where its samples depend on nothing but their places, so that it may be read beside the
     /// path as well: under a ball that stands in soft ground ([`crate::footprint`]), and about a
-    /// contact for how the ground bends ([`hollow_m`]).
+    /// contact for how the ground bends ([`local_concavity_m`]).
     pub is_stateless: bool,
     /// The law by which it carries a tip, for a device's own thread; none where it is hard.
     pub tip_law: Option<TipLaw>,
@@ -68,7 +68,7 @@ impl Properties {
         Self {
             band,
             reach_m: 0.0,
-            beyond: Beyond::Same,
+            extension: Extension::Same,
             is_rigid: false,
             is_stateless: false,
             tip_law: None,
@@ -82,7 +82,7 @@ impl Properties {
         Self {
             band: self.band.union(other.band),
             reach_m: self.reach_m.max(other.reach_m),
-            beyond: self.beyond.max(other.beyond),
+            extension: self.extension.max(other.extension),
             is_rigid: false,
             is_stateless: self.is_stateless && other.is_stateless,
             tip_law: self.tip_law.or(other.tip_law),
@@ -131,7 +131,7 @@ pub const MOST_SHARES: usize = 8;
 /// own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game
 /// steered so does not replay to the bit. Positions are metres from uv (0, 0) and run on beyond the
 /// surface; where texture coordinates wrap, heights must be the same again after the surface's
-/// width and height, or [`Properties::beyond`] says that they are not.
+/// width and height, or [`Properties::extension`] says that they are not.
 ///
 /// A combination of other sources gives its [`parts`](Self::parts) instead, and
 /// [`shares`](Self::shares) where they do not all get every touch as it is: preparing, touching and
@@ -254,7 +254,7 @@ pub fn touch_parts(combination: &mut (impl HeightField + ?Sized), touch: &Touch)
 /// it is touched by a tip of this radius, m: above 0 in a hollow, below 0 on a crest. The ground is
 /// blurred to an eighth of the reach. Only of a [stateless](Properties::is_stateless) source;
 /// `room` is overwritten.
-pub fn hollow_m(
+pub fn local_concavity_m(
     source: &mut (impl HeightField + ?Sized),
     touch: &Touch,
     (reach_m, tip_radius_m): (f64, f64),

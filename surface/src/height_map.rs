@@ -22,7 +22,7 @@ pub use extent::{Extent, MapError};
 
 use crate::dilated::dilated;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Power, PowerKind, Properties, Setup, SurfaceBlock,
+    Extension, HeightField, MAX_BLOCK, PathBlock, Power, PowerKind, Properties, Setup, SurfaceBlock,
     WavelengthBand, bounds,
 };
 use crate::local_relief::LocalRelief;
@@ -309,7 +309,7 @@ impl HeightField for HeightMap {
     fn properties(&self, tile_m: [f64; 2]) -> Properties {
         Properties {
             reach_m: self.reach_m,
-            beyond: self.beyond(tile_m),
+            extension: self.extension(tile_m),
             is_rigid: true,
             is_stateless: !self.heights.levels.is_empty(),
             ..Properties::of(self.band)
@@ -353,17 +353,17 @@ impl HeightMap {
         };
     }
 
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+    fn extension(&self, tile_m: [f64; 2]) -> Extension {
         let everywhere_alike = self.heights.levels.is_empty()
             && !matches!(&self.roughness, Roughness::Map(map) if !map.levels.is_empty());
         let tiles = [tile_m[0] / self.extent.width_m, tile_m[1] / self.extent.height_m];
         let fits = tiles.iter().all(|tiles| *tiles > 0.5 && (tiles - tiles.round()).abs() < 1e-9);
         match self.wrap {
-            _ if everywhere_alike => Beyond::Same,
-            Wrap::Clamp => Beyond::Edge,
-            Wrap::Repeat if fits => Beyond::Same,
-            Wrap::Mirror if fits => Beyond::Mirrored,
-            Wrap::Repeat | Wrap::Mirror => Beyond::Fresh,
+            _ if everywhere_alike => Extension::Same,
+            Wrap::Clamp => Extension::Edge,
+            Wrap::Repeat if fits => Extension::Same,
+            Wrap::Mirror if fits => Extension::Mirrored,
+            Wrap::Repeat | Wrap::Mirror => Extension::Fresh,
         }
     }
 }

@@ -17,7 +17,7 @@
 //! dyadic scales take over (not thinned out, so that any cell size will do), down to its mean.
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, WavelengthBand,
+    Extension, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, WavelengthBand,
 };
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
@@ -273,7 +273,7 @@ impl HeightField for Lattice {
         let band = WavelengthBand { shortest_m: 2.0 * self.texel_m, longest_m: self.longest_m };
         Properties {
             reach_m: self.levels[0].iter().fold(0.0, |reach, c| reach.max(c.abs())),
-            beyond: if repeats { Beyond::Same } else { Beyond::Fresh },
+            extension: if repeats { Extension::Same } else { Extension::Fresh },
             is_stateless: true,
             ..Properties::of(band)
         }

@@ -32,7 +32,7 @@ pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParamet
 
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
+    Extension, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
 };
 use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
@@ -249,7 +249,7 @@ impl HeightField for SolidNoise {
 
     fn properties(&self, _tile_m: [f64; 2]) -> Properties {
         let target = self.parameters.target();
-        Properties { reach_m: target.reach_m(), beyond: Beyond::Fresh, ..Properties::of(target.band()) }
+        Properties { reach_m: target.reach_m(), extension: Extension::Fresh, ..Properties::of(target.band()) }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -282,7 +282,7 @@ impl HeightField for SolidNoise {
     /// Movement that a resting finger feels of what flows.
     fn touch(&mut self, _touch: &Touch) -> Reaction {
         Reaction {
-            stirs: self.parameters.values().iter().any(|p| p.flow_m_s != [0.0; 3]),
+            wakes_contact: self.parameters.values().iter().any(|p| p.flow_m_s != [0.0; 3]),
             ..Reaction::default()
         }
     }

@@ -188,11 +188,12 @@ fn prefilter_strip(
     coefficients: &mut [f32],
 ) {
     let (n, stride) = (raster.width, raster.width + 2 * PAD);
-    let beyond = |len: usize| (0..len + 2 * SETTLE).map(move |i| wrap.index(i as i64 - SETTLE as i64, len));
-    let columns: Vec<usize> = beyond(n).collect();
+    let extension =
+        |len: usize| (0..len + 2 * SETTLE).map(move |i| wrap.index(i as i64 - SETTLE as i64, len));
+    let columns: Vec<usize> = extension(n).collect();
     let mut line = vec![0.0; columns.len()];
     let mut causal: Vec<f64> = Vec::with_capacity(strip.len() * (raster.height + 2 * SETTLE));
-    for y in beyond(raster.height) {
+    for y in extension(raster.height) {
         prefilter_row(raster.row(y), &value, &columns, &mut line);
         let start = causal.len();
         causal.extend(line[SETTLE - PAD..][strip.clone()].iter().map(|c| 6.0 * c));

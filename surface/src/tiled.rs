@@ -12,7 +12,7 @@
 
 use crate::combine::Source;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, Part, PathBlock, PowerKind, Properties, Shares, SurfaceBlock, Touch,
+    Extension, HeightField, MAX_BLOCK, Part, PathBlock, PowerKind, Properties, Shares, SurfaceBlock, Touch,
 };
 
 /// A place in a tile, and how much of it is already the next tile's beginning.
@@ -164,7 +164,7 @@ fn share(places: &[TilePosition; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
 impl HeightField for Tiled {
     fn properties(&self, tile_m: [f64; 2]) -> Properties {
         let own = self.source[0].properties(tile_m);
-        Properties { beyond: Beyond::Same, is_rigid: false, ..own }
+        Properties { extension: Extension::Same, is_rigid: false, ..own }
     }
 
     fn parts(&mut self) -> &mut [Part] {

@@ -2,7 +2,7 @@
 //! same place.
 
 use asperity_surface::combine::{Scale, Sum};
-use asperity_surface::height_field::{HeightField, SurfaceBlock, Touch, hollow_m};
+use asperity_surface::height_field::{HeightField, SurfaceBlock, Touch, local_concavity_m};
 use asperity_surface::height_map::{Extent, HeightMap};
 use asperity_surface::raster::Raster;
 use asperity_surface::tiled::Tiled;
@@ -21,7 +21,7 @@ fn waves() -> HeightMap {
 }
 
 fn hollow(source: &mut dyn HeightField, touch: &Touch, reach_m: f64) -> f64 {
-    hollow_m(source, touch, (reach_m, 0.0), &mut SurfaceBlock::default())
+    local_concavity_m(source, touch, (reach_m, 0.0), &mut SurfaceBlock::default())
 }
 
 fn at(u_m: f64, v_m: f64) -> Touch {
@@ -44,8 +44,11 @@ fn waves_bend_as_their_second_difference_says() {
             // Half of the four points lie along the crest.
             let second = (TAU * reach_m / WAVE_M).cos() - 1.0;
             let expected_m = 0.5 * AMPLITUDE_M * (TAU * u_m / WAVE_M).sin() * second;
-            let hollow_m = hollow(&mut waves, &at(u_m, 0.05), reach_m);
-            assert!((hollow_m - expected_m).abs() < 0.03 * AMPLITUDE_M, "{u_m}: {hollow_m} {expected_m}");
+            let local_concavity_m = hollow(&mut waves, &at(u_m, 0.05), reach_m);
+            assert!(
+                (local_concavity_m - expected_m).abs() < 0.03 * AMPLITUDE_M,
+                "{u_m}: {local_concavity_m} {expected_m}"
+            );
         }
     }
 }

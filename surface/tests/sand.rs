@@ -29,7 +29,7 @@ fn write(sand: &mut SandSimulation, frames: u32, force_n: f64) -> Vec<f64> {
             let t = f64::from(n) / 60.0;
             let at = [0.3 + 0.15 * (1.1 * t).sin(), 0.3 + 0.1 * (2.3 * t).cos()];
             let velocity = [0.165 * (1.1 * t).cos(), -0.23 * (2.3 * t).sin()];
-            sand.tell(pose(at, velocity, force_n));
+            sand.set_pose(pose(at, velocity, force_n));
             let start = Instant::now();
             sand.frame();
             start.elapsed().as_secs_f64()
@@ -123,13 +123,13 @@ fn a_column_collapses_to_the_cone_of_its_volume_within_3_percent() {
 fn a_tool_held_still_changes_nothing_once_the_sand_has_settled() {
     let mut sand = SandSimulation::new(&design(200, 0.1)).unwrap();
     for _ in 0..120 {
-        sand.tell(pose([0.05, 0.05], [0.0; 2], 2.0));
+        sand.set_pose(pose([0.05, 0.05], [0.0; 2], 2.0));
         sand.frame();
     }
     let settled = sand.grid().clone();
     assert!(settled.max_slope_deg() > 1.0);
     for _ in 0..60 {
-        sand.tell(pose([0.05, 0.05], [0.0; 2], 2.0));
+        sand.set_pose(pose([0.05, 0.05], [0.0; 2], 2.0));
         sand.frame();
     }
     assert_eq!(&settled, sand.grid());
@@ -140,7 +140,7 @@ fn a_dragged_sphere_leaves_a_groove_of_its_depth_with_sand_on_the_rim_and_a_heap
     let mut sand = SandSimulation::new(&design(400, 0.1)).unwrap();
     let force = 3.0;
     for n in 0..90 {
-        sand.tell(pose([0.02 + 0.04 * f64::from(n) / 60.0, 0.05], [0.04, 0.0], force));
+        sand.set_pose(pose([0.02 + 0.04 * f64::from(n) / 60.0, 0.05], [0.04, 0.0], force));
         sand.frame();
     }
     let level = 0.05;
@@ -213,7 +213,7 @@ fn the_same_strokes_give_the_same_sand_and_the_edge_keeps_its_sand_too() {
         for n in 0..200 {
             let t = f64::from(n) / 200.0;
             // Along the border and out of the box.
-            sand.tell(pose([-0.01 + 0.12 * t, 0.001 + 0.002 * t], [0.036, 0.0], 4.0));
+            sand.set_pose(pose([-0.01 + 0.12 * t, 0.001 + 0.002 * t], [0.036, 0.0], 4.0));
             sand.frame();
         }
         sand.settle();
@@ -274,7 +274,7 @@ fn a_tool_forced_to_the_bottom_of_deep_sand_heaps_no_higher_than_half_a_metre_an
     let deep = SandDesign { depth_m: 0.45, tool, ..design(100, 0.4) };
     let mut sand = SandSimulation::new(&deep).unwrap();
     for n in 0..60 {
-        sand.tell(pose([0.1 + 0.003 * f64::from(n), 0.2], [0.18, 0.0], 1e4));
+        sand.set_pose(pose([0.1 + 0.003 * f64::from(n), 0.2], [0.18, 0.0], 1e4));
         sand.frame();
         assert_eq!(sand.figures().drift_units, 0, "frame {n}");
         let heights = || (0..10_000).map(|i| sand.grid().height_m(i % 100, i / 100));
@@ -347,7 +347,7 @@ fn a_fast_tool_leaves_no_scallops_of_a_frame_s_length() {
         let frames = (0.18 / speed_m_s * 60.0) as u32;
         for frame in 0..=frames {
             let at = [0.03 + speed_m_s * f64::from(frame) / 60.0, 0.125];
-            sand.tell(pose(at, [speed_m_s, 0.0], force_n));
+            sand.set_pose(pose(at, [speed_m_s, 0.0], force_n));
             sand.frame();
         }
         let depth_m = sand.law().depth_m(force_n);

@@ -143,7 +143,7 @@ fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps
         normal_force_n: 0.5,
         ..Touch::default()
     };
-    assert!(flows.touch(&touch).stirs && !still.clone().touch(&touch).stirs);
+    assert!(flows.touch(&touch).wakes_contact && !still.clone().touch(&touch).wakes_contact);
     // Out of the surface it boils in its place.
     parameters.flow_m_s = [0.0, 0.0, 0.05];
     let mut boils = SolidNoise::new(parameters, 7).unwrap();

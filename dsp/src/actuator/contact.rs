@@ -66,7 +66,7 @@ impl ContactOutput {
 
     /// Tests whether a contact of a probe that has skin goes through it.
     #[must_use]
-    pub const fn minds_skin(&self) -> bool {
+    pub const fn uses_skin_filter(&self) -> bool {
         self.through_skin && matches!(self.quantity, Quantity::Acceleration)
     }
 

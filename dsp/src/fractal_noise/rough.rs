@@ -25,7 +25,7 @@ impl<F: Copy> Rough<F> {
         let (lanes, first) = (v.load(roughness), roughness[0] as f32);
         if v.equal(lanes, v.splat(first)) {
             if first != even.roughness {
-                even.tell(v, sets, first);
+                even.recompute_gains(v, sets, first);
             }
             let tail_boost = v.splat(even.tail_boost);
             return Self { even: true, lanes, gains: Gains { finest: lanes, coarser: lanes, tail_boost } };
@@ -55,7 +55,12 @@ impl<const W: usize> Even<W> {
 
     /// Gains of another roughness.
     #[inline(always)]
-    fn tell<const N: usize, V: Vector<N>>(&mut self, v: V, sets: &[&OctaveWeights; W], roughness: f32) {
+    fn recompute_gains<const N: usize, V: Vector<N>>(
+        &mut self,
+        v: V,
+        sets: &[&OctaveWeights; W],
+        roughness: f32,
+    ) {
         let lanes = v.splat(roughness);
         let (within, told) = (v.first(within_0_1(v, lanes)), gains(v, lanes));
         (self.roughness, self.tail_boost) = (roughness, v.first(told.tail_boost));

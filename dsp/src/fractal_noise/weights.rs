@@ -109,7 +109,12 @@ impl OctaveWeights {
     /// `faded_m`. κ was measured on the noise (within 50 % from 2 to 24 samples a cell); longer
     /// cells count for nothing.
     #[must_use]
-    pub fn missed(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2], left_m: f64) -> Missed {
+    pub fn missed(
+        &self,
+        roughness: f64,
+        [footprint_m, faded_m]: [f64; 2],
+        left_m: f64,
+    ) -> InterpolationError {
         let r = roughness.clamp(0.0, 1.0);
         let sum = |c: &[f32]| c.iter().rev().fold(0.0, |sum, c| f64::from(*c) + r * sum);
         let coarser = sum(&INVERSE_OCTAVE_RATIO);
@@ -138,13 +143,13 @@ impl OctaveWeights {
             left += square;
             left > most
         });
-        Missed { all_m: libm::sqrt(all), octave: octave.unwrap_or(OCTAVES) }
+        InterpolationError { all_m: libm::sqrt(all), octave: octave.unwrap_or(OCTAVES) }
     }
 }
 
 /// Error of cubics through samples of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Missed {
+pub struct InterpolationError {
     /// Rms, m.
     pub all_m: f64,
     /// The coarsest octave that has to be looked at between samples, by its index; [`OCTAVES`] for

@@ -22,7 +22,7 @@ impl OnsetMerge {
     /// Pulse to deposit for `pulse`, which begins `onset_offset` of a step after `onset_sample`;
     /// `None` when it is part of the contact before.
     #[inline]
-    pub fn admit(
+    pub fn merge_onset(
         &mut self,
         pulse: HertzPulse,
         onset_sample: u64,

@@ -44,7 +44,7 @@ impl CleanBlock {
         let inputs = height_m.iter().zip(force_n);
         for ((h, f), (&height, &force)) in self.height_m.iter_mut().zip(&mut self.force_n).zip(inputs) {
             good &= is_height(height) & is_force(force);
-            (*h, *f) = tidy(height, force);
+            (*h, *f) = flush_denormals(height, force);
         }
         if !good {
             self.repair(state, height_m, force_n);
@@ -73,7 +73,7 @@ impl CleanBlock {
 
 /// Height and force without denormals, force without its negative part.
 #[inline(always)]
-pub(super) fn tidy(height_m: f64, force_n: f64) -> (f64, f64) {
+pub(super) fn flush_denormals(height_m: f64, force_n: f64) -> (f64, f64) {
     let force_n = if force_n > 0.0 { force_n } else { 0.0 };
     ((height_m + VANISHING) - VANISHING, (force_n + VANISHING) - VANISHING)
 }

@@ -44,13 +44,14 @@ const AT_ONCE: usize = 8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct FreeResponse {
-    hears: [[Lanes; SUMS]; TURNS],
+    output_gains: [[Lanes; SUMS]; TURNS],
     step: [[Lanes; 2]; 2],
 }
 
 impl FreeResponse {
     /// Sixteen lanes of which nothing is heard.
-    pub const SILENT: Self = Self { hears: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
+    pub const SILENT: Self =
+        Self { output_gains: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
 
     /// Up to 16 modes as the other output hears them: frequencies and decays of the bank's, other
     /// amplitudes and phases. Modes at or above the Nyquist frequency are silent.
@@ -77,9 +78,9 @@ impl FreeResponse {
             h[1]
         };
         let h: [f64; STEP + 1] = from_fn(|_| next());
-        for (hears, h) in self.hears.iter_mut().zip(h.windows(TURN + 1).step_by(TURN)) {
+        for (output_gains, h) in self.output_gains.iter_mut().zip(h.windows(TURN + 1).step_by(TURN)) {
             let by = out_of(from_fn(|n| h[n]));
-            hears.iter_mut().zip(by).for_each(|(to, by)| to[lane] = by as f32);
+            output_gains.iter_mut().zip(by).for_each(|(to, by)| to[lane] = by as f32);
         }
         let jump = (0..STEP.ilog2()).fold(free_step(pole), |x, _| square(x));
         for (to, row) in self.step.iter_mut().zip(jump) {
@@ -164,7 +165,7 @@ unsafe fn add_lanes<T: Set, const TILE: usize>(
                     let products = [last, v, last - w, v + w, w];
                     for t in 0..TILE {
                         for i in 0..SUMS {
-                            let by = read(&groups[g].hears[tile + t][i]);
+                            let by = read(&groups[g].output_gains[tile + t][i]);
                             sums[t][i] = mul_add::<T>(products[i], by, sums[t][i]);
                         }
                     }

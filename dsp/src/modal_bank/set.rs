@@ -162,7 +162,13 @@ impl<T: Set, const P: usize, const S: usize> States<T, P, S> {
     /// # Safety
     /// As [`Coefficients::read`].
     #[inline(always)]
-    unsafe fn hear(&self, s: usize, p: usize, by: &Coefficients<'_, T, P, S>, sums: &mut [Vector<T>; SUMS]) {
+    unsafe fn accumulate_outputs(
+        &self,
+        s: usize,
+        p: usize,
+        by: &Coefficients<'_, T, P, S>,
+        sums: &mut [Vector<T>; SUMS],
+    ) {
         let (v, w) = (self.v[s][p], self.w[s][p]);
         // SAFETY: the caller's promise.
         unsafe {
@@ -191,7 +197,7 @@ impl<T: Set, const P: usize, const S: usize> States<T, P, S> {
             unsafe {
                 let mut sums = so_far(by.token, turn, lane + p * len::<T>(), is_first);
                 for s in 0..S {
-                    self.hear(s, p, by, &mut sums);
+                    self.accumulate_outputs(s, p, by, &mut sums);
                 }
                 keep::<T>(turn, lane + p * len::<T>(), sums);
             }
@@ -262,9 +268,9 @@ pub(super) unsafe fn set<T: Set, const P: usize, const S: usize, const K: usize>
         let mut n = head;
         for t in whole.clone() {
             z.send(&by, turns.get_unchecked_mut(t), part.lane, is_first);
-            let mut hears = [[Vector::<T>::splat(token, 0.0); 2]; TURN / 2];
+            let mut output_gains = [[Vector::<T>::splat(token, 0.0); 2]; TURN / 2];
             if shared {
-                for (i, [first, both]) in hears.iter_mut().enumerate() {
+                for (i, [first, both]) in output_gains.iter_mut().enumerate() {
                     *first = heard::<T, K>(token, feed, part, chunk.at + n + 2 * i, 0, 0);
                     *both = Vector::<T>::splat(token, *pairs.add((n - head) / 2 + i));
                 }
@@ -272,12 +278,12 @@ pub(super) unsafe fn set<T: Set, const P: usize, const S: usize, const K: usize>
             for s in 0..S {
                 for p in 0..P {
                     if !shared {
-                        for (i, [first, both]) in hears.iter_mut().enumerate() {
+                        for (i, [first, both]) in output_gains.iter_mut().enumerate() {
                             *first = heard::<T, K>(token, feed, part, chunk.at + n + 2 * i, s, p);
                             *both = *first + heard::<T, K>(token, feed, part, chunk.at + n + 2 * i + 1, s, p);
                         }
                     }
-                    z.step(s, p, &by, hears);
+                    z.step(s, p, &by, output_gains);
                 }
             }
             n += TURN;
@@ -321,22 +327,22 @@ unsafe fn cut<T: Set, const P: usize, const S: usize, const K: usize>(
             let pending = &mut job.states[part.from + s].pending;
             // SAFETY: the caller's promise.
             unsafe {
-                let mut hears = [Vector::<T>::splat(token, 0.0); TURN];
-                for (hears, pending) in hears.iter_mut().zip(pending.iter()) {
-                    *hears = load(token, pending.as_ptr().add(lane));
+                let mut output_gains = [Vector::<T>::splat(token, 0.0); TURN];
+                for (output_gains, pending) in output_gains.iter_mut().zip(pending.iter()) {
+                    *output_gains = load(token, pending.as_ptr().add(lane));
                 }
                 for i in 0..count {
-                    hears[phase + i] = heard::<T, K>(token, job.feed, part, at + i, s, p);
+                    output_gains[phase + i] = heard::<T, K>(token, job.feed, part, at + i, s, p);
                 }
                 if phase + count == TURN {
-                    let [a, b, c, d] = hears;
+                    let [a, b, c, d] = output_gains;
                     z.step(s, p, by, [[a, a + b], [c, c + d]]);
-                    hears = [Vector::<T>::splat(token, 0.0); TURN];
+                    output_gains = [Vector::<T>::splat(token, 0.0); TURN];
                 }
                 // Not by value: an iterator that owns the vectors lies across their alignment, and
                 // waits for itself.
                 for i in 0..TURN - 1 {
-                    store::<T>(hears[i], pending[i].as_mut_ptr().add(lane));
+                    store::<T>(output_gains[i], pending[i].as_mut_ptr().add(lane));
                 }
             }
         }

@@ -11,7 +11,7 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | A | `AMPLITUDE_M` | assumed: 0.1 m/s rms; where reports are exact the estimate does not depend on it |
-//! | σ, σᵥ | `NOISE` | exact, rounded or a tracker's; whichever has foretold the last reports best counts |
+//! | σ, σᵥ | `NOISE` | exact, rounded or a tracker's; whichever has predicted the last reports best counts |
 //! | r | `Estimate::rest` | what the estimate jumps by at a report, made up smoothly: slowly in place (τ_p), at once in velocity (τᵥ) |
 //! | lag | the 30 Hz filter's delay | the same as that of the other modes |
 //!

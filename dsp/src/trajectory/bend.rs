@@ -1,5 +1,5 @@
 //! Bend: how a hand's velocity is changing, from its last three reports, as far as that has
-//! foretold the reports so far.
+//! predicted the reports so far.
 //!
 //! ```text
 //! velocity(τ) = v + T (a τ + ½ j τ²)            τ ≤ 1.25 T₀ after the report, then constant
@@ -10,21 +10,21 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | v, p | a report's velocity and place | of reports that hold a velocity only |
-//! | T | `trust` | 0 unless the bend has foretold the reports at least twice as well as the straight line |
+//! | T | `trust` | 0 unless the bend has predicted the reports at least twice as well as the straight line |
 //! | T₀ | the running event period | |
 //!
 //! A hand that speeds up by 2 m/s² leaves dead reckoning by 0.3 mm between two reports at 60 Hz, a
 //! seventh of a 2 mm grating's period and more than a finger's whole path error otherwise. A finger
-//! that stops dead or meets an edge is foretold by neither, so that the trust is gone with the very
-//! report that tells of it, and the path goes on as dead reckoning does; so it is where reports are
-//! noisy, or a game's velocities do not belong to its places.
+//! that stops dead or meets an edge is predicted by neither, so that the trust is gone with the
+//! very report that tells of it, and the path goes on as dead reckoning does; so it is where
+//! reports are noisy, or a game's velocities do not belong to its places.
 
-/// Weight of the past in what has been foretold.
+/// Weight of the past in what has been predicted.
 const FORGETTING: f64 = 0.5;
 /// Ratio of squared errors below which the bent one of two predictions counts.
 const SELECTION_RATIO: f64 = 4.0;
 /// Event periods for which a bend is believed.
-const BELIEVED_PERIODS: f64 = 1.25;
+const VELOCITY_HOLD_PERIODS: f64 = 1.25;
 /// Intervals below this are no intervals, s.
 const SHORTEST_S: f64 = 1e-5;
 
@@ -60,7 +60,7 @@ impl Turn {
     }
 }
 
-/// The last reports' velocities, and how well they have foretold each other.
+/// The last reports' velocities, and how well they have predicted each other.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Bend {
     /// The latest velocity, and those before it, m/s …
@@ -129,7 +129,7 @@ impl Bend {
     fn through_three(&self, period_s: f64) -> Turn {
         let [last_s, before_s] = self.gaps_s;
         let [now, last, before] = self.velocities_m_s;
-        let mut turn = Turn { until_s: BELIEVED_PERIODS * period_s, ..Turn::default() };
+        let mut turn = Turn { until_s: VELOCITY_HOLD_PERIODS * period_s, ..Turn::default() };
         for axis in 0..2 {
             let first = (now[axis] - last[axis]) / last_s;
             let second = (first - (last[axis] - before[axis]) / before_s) / (last_s + before_s);

@@ -9,7 +9,7 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | p₀, v₀, t₀ | the latest [`PathEvent`] | position unwrapped, velocity reported or estimated |
-//! | b | `bend` | how the velocity changes, as far as that has foretold the reports so far; 0 without reported velocities |
+//! | b | `bend` | how the velocity changes, as far as that has predicted the reports so far; 0 without reported velocities |
 //! | T | `DeadReckoning`'s running event period | 1–100 ms, 1/60 s until two events are known |
 //! | τ | how a velocity fades that no report renews | T/2, at least 50 ms |
 //! | H_lp | [`TrajectoryDesign`]'s filter | Hasti §III-C: 2nd-order Butterworth, −3 dB at 30 Hz |

@@ -11,7 +11,7 @@ const PERIOD_RANGE_S: (f64, f64) = (0.001, 0.1);
 /// Weight of a new interval in the running estimate.
 const PERIOD_WEIGHT: f64 = 0.25;
 /// Event periods over which a reported velocity is believed.
-const BELIEVED_PERIODS: f64 = 1.5;
+const VELOCITY_HOLD_PERIODS: f64 = 1.5;
 /// Time constant with which it then fades, event periods …
 const FADE_PERIODS: f64 = 0.5;
 /// … and at least so long, s: most fingers go on while a game hangs, and one that has stopped
@@ -144,7 +144,7 @@ impl DeadReckoning {
     /// Time for which the latest event's velocity is trusted.
     pub fn belief(&self, design: &TrajectoryDesign) -> Horizon {
         Horizon {
-            whole_samples: (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64,
+            whole_samples: (VELOCITY_HOLD_PERIODS * self.period_s / design.sample_period_s) as i64,
             fade_s: (FADE_PERIODS * self.period_s).max(LEAST_FADE_S),
         }
     }

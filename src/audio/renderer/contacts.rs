@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::audio::binding::Binding;
 use crate::audio::shared::Segment;
-use crate::audio::voice::{EMPTY_FORCE_N, Phase, Voice};
+use crate::audio::voice::{EMPTY_FORCE_N, Voice, VoiceState};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis, MAX_FORCE_N};
 use crate::model::stamp::Stamp;
@@ -92,7 +92,7 @@ impl Renderer {
             voice.contact == contact
                 && (voice.surface, voice.role) == (surface, role)
                 && voice.ended
-                && matches!(voice.phase, Phase::Fading { .. })
+                && matches!(voice.phase, VoiceState::Fading { .. })
                 && voice.goes_on_at(sample, slot, stamp)
         }) else {
             return false;
@@ -239,7 +239,7 @@ impl Renderer {
     }
 
     pub(super) fn sounding_count(&self) -> usize {
-        self.voices_used.iter().filter(|&voice| self.voices[voice].phase == Phase::Sounding).count()
+        self.voices_used.iter().filter(|&voice| self.voices[voice].phase == VoiceState::Sounding).count()
     }
 
     /// A voice for a new contact: a free one, after stealing the least important when all are
@@ -250,9 +250,9 @@ impl Renderer {
             self.silence_least();
         }
         let remaining = |voice: &Voice| match voice.phase {
-            Phase::Free => 0,
-            Phase::Fading { left } => left,
-            Phase::Sounding => u32::MAX,
+            VoiceState::Free => 0,
+            VoiceState::Fading { left } => left,
+            VoiceState::Sounding => u32::MAX,
         };
         (0..self.voices.len()).min_by_key(|&i| remaining(&self.voices[i])).unwrap_or(0)
     }
@@ -260,7 +260,7 @@ impl Renderer {
     /// Fades the least important contact.
     pub(super) fn silence_least(&mut self) {
         let priority = |i: &usize| self.voices[*i].priority();
-        let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == Phase::Sounding);
+        let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == VoiceState::Sounding);
         if let Some(least) = sounding.min_by(|a, b| priority(a).total_cmp(&priority(b))) {
             self.silence(least, true);
         }
@@ -286,7 +286,7 @@ impl Renderer {
     pub(super) fn silence_all(&mut self) {
         for at in 0..self.voices_used.len() {
             let voice = self.voices_used.at(at);
-            if self.voices[voice].phase == Phase::Sounding {
+            if self.voices[voice].phase == VoiceState::Sounding {
                 self.silence(voice, false);
             }
         }
@@ -307,5 +307,5 @@ impl Renderer {
 }
 
 fn sounding(voices: &[Box<Voice>], contact: ContactId) -> Option<usize> {
-    voices.iter().position(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
+    voices.iter().position(|voice| voice.contact == contact && voice.phase == VoiceState::Sounding)
 }

@@ -3,7 +3,7 @@
 
 use super::Renderer;
 use super::contacts::SilentContact;
-use crate::audio::voice::Phase;
+use crate::audio::voice::VoiceState;
 use crate::link::message::Message;
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
@@ -38,7 +38,7 @@ impl Renderer {
                 edit => self.apply(edit),
             }
         }
-        let touching = self.voices.iter().filter(|voice| voice.phase == Phase::Sounding);
+        let touching = self.voices.iter().filter(|voice| voice.phase == VoiceState::Sounding);
         let touching = touching.map(|voice| SilentContact::of(voice));
         let contacts = self.silent.iter().copied().chain(touching).collect();
         HandedOver {

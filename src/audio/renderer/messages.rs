@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::audio::seat::Change;
-use crate::audio::voice::Phase;
+use crate::audio::voice::VoiceState;
 use crate::link::message::{Felt, Message, Retired};
 use crate::link::stats::Counters;
 use crate::model::event::ContactEvent;
@@ -157,7 +157,7 @@ impl Renderer {
         self.seats_used.insert(slot);
         if self.seats[slot].set(id, surface, self.position, rate, &mut self.to_game) == Change::Restart {
             for index in 0..self.voices.len() {
-                if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
+                if self.voices[index].surface == slot && self.voices[index].phase == VoiceState::Sounding {
                     self.silence(index, false);
                 }
             }

@@ -156,7 +156,7 @@ impl Bus {
     }
 
     /// The `n` samples of the present stretch, for a body to add to.
-    fn hear(&mut self, n: usize) -> &mut [f32] {
+    fn slice(&mut self, n: usize) -> &mut [f32] {
         self.added = self.added.max(n);
         &mut self.sum[..n]
     }
@@ -257,7 +257,7 @@ impl Renderer {
             let entry = self.crew.as_mut().and_then(|crew| crew.take_body(index));
             let body = &mut self.bodies[index];
             if body.is_plain() {
-                shed += body.render(terms, entry, self.buses[body.bus()].hear(n));
+                shed += body.render(terms, entry, self.buses[body.bus()].slice(n));
             } else {
                 shed += render_moving(terms, entry, body, &mut self.buses, &mut self.mix.body[..n]);
             }
@@ -303,7 +303,7 @@ fn render_moving(
     sound.fill(0.0);
     let shed = body.render(terms, entry, sound);
     body.scale(sound);
-    body.spread(sound, |bus, i, x| buses[bus].hear(sound.len())[i] += x);
+    body.spread(sound, |bus, i, x| buses[bus].slice(sound.len())[i] += x);
     shed
 }
 

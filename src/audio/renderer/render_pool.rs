@@ -25,7 +25,7 @@ use crate::audio::index_set::IndexSet;
 use crate::audio::pool::{Job, Pool};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{SampleRange, Segment, Shared};
-use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
+use crate::audio::voice::{Scratch, Voice, VoiceBlock, VoiceState};
 use crate::link::tap::NoTap;
 use crate::resource::body::{BodySlot, RenderArgs};
 use asperity_dsp::actuator::ContactOutput;
@@ -199,7 +199,7 @@ impl RenderPool {
         }
         self.last_to_touch.fill(0);
         for index in used.iter() {
-            if voices[index].phase == Phase::Free {
+            if voices[index].phase == VoiceState::Free {
                 continue;
             }
             let Some(mut share) = self.voices.pop() else { break };

@@ -8,13 +8,13 @@ use crate::audio::body_seat::BodySeat;
 use crate::audio::index_set::IndexSet;
 use crate::audio::seat::Seat;
 use crate::audio::shared::{SampleRange, Segment, Shared};
-use crate::audio::voice::{Phase, Scratch, Voice, VoiceBlock};
+use crate::audio::voice::{Scratch, Voice, VoiceBlock, VoiceState};
 use crate::link::stats::{Counters, Counts};
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
 use crate::resource::body::RenderArgs;
-use crate::resource::body_rub::RubAsked;
+use crate::resource::body_rub::FrictionInput;
 use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
@@ -45,7 +45,7 @@ impl Gathering<'_> {
         if let (true, Some((body, slot))) = (out.rub.rubs, touched)
             && let Some(friction) = slot.surface.rubs()
         {
-            let asked = RubAsked {
+            let asked = FrictionInput {
                 owner,
                 spot: rubbed(&slot.surface, self.placed[index], out.rub.along),
                 friction,
@@ -123,7 +123,7 @@ impl Renderer {
         } else {
             for index in self.voices_used.iter() {
                 let voice = &mut self.voices[index];
-                if voice.phase == Phase::Free {
+                if voice.phase == VoiceState::Free {
                     continue;
                 }
                 let seat = &mut self.seats[voice.surface];

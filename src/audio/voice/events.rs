@@ -2,7 +2,7 @@
 
 use super::profile::{Along, Profile};
 use super::skin::ContactSkin;
-use super::{PadSample, PathPoint, Phase, Scratch, Voice};
+use super::{PadSample, PathPoint, Scratch, Voice, VoiceState};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Segment, Shared};
 use crate::model::event::{ContactId, ContactSample};
@@ -41,7 +41,7 @@ impl Voice {
         let Some(slot) = seat.current() else { return };
         let (shared, position) = (at.shared, at.position);
         let lands = sample.closing_m_s > 0.0;
-        (self.contact, self.phase) = (contact, Phase::Sounding);
+        (self.contact, self.phase) = (contact, VoiceState::Sounding);
         (self.begun, self.refreshed) = (position, position);
         (self.asleep, self.ended, self.left_behind) = (false, false, false);
         (self.empty_reports, self.unshown_n_s) = (0, 0.0);
@@ -172,16 +172,16 @@ impl Voice {
     /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls
     /// after a lift-off, and the pad it sets free would be felt as a thump louder than the stroke.
     pub(crate) fn fade(&mut self, shared: &Shared) {
-        if self.phase == Phase::Sounding {
+        if self.phase == VoiceState::Sounding {
             self.path.hold_force();
-            self.phase = Phase::Fading { left: shared.fade_samples() };
+            self.phase = VoiceState::Fading { left: shared.fade_samples() };
         }
     }
 
     /// Comes back out of its fade.
     pub(crate) fn resume(&mut self, shared: &Shared) {
         self.fades.resume(self.phase, shared);
-        self.phase = Phase::Sounding;
+        self.phase = VoiceState::Sounding;
         self.ended = false;
         self.left_behind = false;
     }

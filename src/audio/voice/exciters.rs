@@ -143,7 +143,7 @@ impl Exciters {
             impulse_n_s: by.probe.collision_mass_kg * onset.closing_m_s,
             contact_time_s: contact_time_s.min(LONGEST_COLLISION_S),
         };
-        if let Some(pulse) = self.merge.admit(pulse, sample, offset, by.sample_rate_hz) {
+        if let Some(pulse) = self.merge.merge_onset(pulse, sample, offset, by.sample_rate_hz) {
             self.pulses.deposit(&pulse, sample, offset, by.sample_rate_hz);
         }
         contact_time_s > LONGEST_COLLISION_S

@@ -1,7 +1,7 @@
 //! Fades: raised cosines, in for a contact that was suddenly there (a landing has its own
 //! beginning), out for one that ended, lapsed or was stolen.
 
-use super::Phase;
+use super::VoiceState;
 use super::block::VoiceBlock;
 use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
@@ -49,10 +49,10 @@ impl Fades {
     }
 
     /// Comes back out of a fade that stands at `phase`, from the level it has faded to.
-    pub(super) fn resume(&mut self, phase: Phase, shared: &Shared) {
+    pub(super) fn resume(&mut self, phase: VoiceState, shared: &Shared) {
         let step = 1.0 / f64::from(shared.fade_samples());
         // Before the first faded sample nothing has happened yet.
-        let faded = matches!(phase, Phase::Fading { left } if left < shared.fade_samples());
+        let faded = matches!(phase, VoiceState::Fading { left } if left < shared.fade_samples());
         let phase = libm::acos((1.0 - 2.0 * self.gain).clamp(-1.0, 1.0)) / std::f64::consts::PI;
         self.rising = faded.then_some(Rising { phase, speed: -step });
         if faded {
@@ -63,16 +63,16 @@ impl Fades {
     /// Fades `n` samples; the phase after them.
     pub(super) fn run(
         &mut self,
-        mut phase: Phase,
+        mut phase: VoiceState,
         role_gain: f64,
         shared: &Shared,
         n: usize,
         out: &mut VoiceBlock,
-    ) -> Phase {
+    ) -> VoiceState {
         if role_gain != 1.0 || !self.role_gain.settled_at(1.0) {
             (0..n).for_each(|i| out.scale(i, self.role_gain.tick(role_gain)));
         }
-        if self.in_left == 0 && self.rising.is_none() && phase == Phase::Sounding {
+        if self.in_left == 0 && self.rising.is_none() && phase == VoiceState::Sounding {
             self.gain = 1.0;
             return phase;
         }
@@ -89,15 +89,15 @@ impl Fades {
                     self.rising = None;
                 }
             }
-            if let Phase::Fading { left } = phase {
+            if let VoiceState::Fading { left } = phase {
                 let left = left.saturating_sub(1);
                 self.gain *= rise[left as usize];
-                phase = Phase::Fading { left };
+                phase = VoiceState::Fading { left };
             }
             if self.gain != 1.0 {
                 out.scale(i, self.gain);
             }
         }
-        if phase == (Phase::Fading { left: 0 }) { Phase::Free } else { phase }
+        if phase == (VoiceState::Fading { left: 0 }) { VoiceState::Free } else { phase }
     }
 }

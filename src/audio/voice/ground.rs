@@ -3,7 +3,7 @@
 
 use super::profile::Along;
 use super::rolling::Rolling;
-use super::{EMPTY_FORCE_N, PadSample, PathPoint, Phase, Scratch, Voice};
+use super::{EMPTY_FORCE_N, PadSample, PathPoint, Scratch, Voice, VoiceState};
 use crate::audio::seat::Seat;
 use crate::audio::shared::{Segment, Shared};
 use crate::resource::area::{loudness, nestling};
@@ -17,7 +17,7 @@ impl Voice {
     /// ground and force make it, to a quarter of an octave; none while nothing presses.
     pub(super) fn pressing_at(&self, stretch: Segment<'_>, seat: &Seat) -> Option<Probe> {
         let force_n = self.path.last.normal_force_n;
-        if !stretch.is_on_grid() || self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
+        if !stretch.is_on_grid() || self.phase != VoiceState::Sounding || force_n <= EMPTY_FORCE_N {
             return None;
         }
         let slot = seat.current()?;
@@ -37,8 +37,8 @@ impl Voice {
     ) -> f64 {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let touch = self.touch_at(position);
-        let hollow_m = |reach_m| seat.hollow_m(&touch, (reach_m, tip_radius_m), room);
-        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
+        let local_concavity_m = |reach_m| seat.local_concavity_m(&touch, (reach_m, tip_radius_m), room);
+        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, local_concavity_m)
     }
 
     /// Hands the ground under its last sample to what rolls.
@@ -103,7 +103,7 @@ impl Voice {
             && self.skin.is_still()
             && self.pad.is_settled(&row)
             && self.reaction.grain_rate_per_s == 0.0
-            && !self.reaction.stirs
+            && !self.reaction.wakes_contact
             && !scratch.out.rub.rubs
             && self.exciters.are_still(scratch.out.impulse_n_s[n - 1], position + n as u64);
         if self.asleep {

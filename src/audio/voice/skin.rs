@@ -42,7 +42,7 @@ impl ContactSkin {
         } else {
             self.growth = None;
         }
-        if ridge_m == 0.0 || !output.minds_skin() {
+        if ridge_m == 0.0 || !output.uses_skin_filter() {
             self.now = None;
             return;
         }

@@ -13,7 +13,7 @@
 //! | hitches, and catches up in a burst | a stamp that comes more than [`LATE_S`] late | tied anew, counted: the burst keeps its distances |
 //! | … by less, or by more, with strikes among it | two strikes that would sound on one sample | tied anew, counted: they keep their distance |
 //! | goes on while the audio stands still | reports of more than [`BREAK_S`] at one position | tied anew each 0.1 s, counted; strikes from before a tie are dropped |
-//! | runs ahead of the audio for good, as after a shorter gap | no stamp within a window comes close | its time runs faster by [`HURRY`] until one does |
+//! | runs ahead of the audio for good, as after a shorter gap | no stamp within a window comes close | its time runs faster by [`MAX_OVERSPEED`] until one does |
 //! | runs in slow motion or fast | the smallest lead drifts by the same share in window after window | its pace is followed, counted |
 
 /// A stamp that parts from the audio by more than this is no jitter and no burst, s: eight ticks at
@@ -33,7 +33,7 @@ const CREEP_SAMPLES: f64 = 0.2;
 const CREEP_SHARE: f64 = 0.01;
 /// … or, while every stamp lies too far ahead, this share of the time that goes by: distances
 /// shrink by as much, and nothing that waits is thrown onto what is reported now.
-const HURRY: f64 = 0.05;
+const MAX_OVERSPEED: f64 = 0.05;
 /// Length of a window in which the smallest lead is looked for, s of audio.
 const WINDOW_S: f64 = 0.3;
 /// Events a window needs to say something.
@@ -150,7 +150,7 @@ impl Live {
             (tie.time_s, tie.sample, sample, jumped) = (time_s, position, position, true);
             tie.window.least_lead = 0.0;
         } else if lead >= 0.0 {
-            let hurries = if tie.ahead { HURRY * passed.max(0.0) } else { 0.0 };
+            let hurries = if tie.ahead { MAX_OVERSPEED * passed.max(0.0) } else { 0.0 };
             tie.sample -= lead.min(hurries.max(CREEP_SAMPLES + CREEP_SHARE * tie.least_lead));
         } else if -lead <= SLIGHTLY_LATE_S * self.sample_rate_hz {
             (tie.sample, sample) = (tie.sample - lead, position);

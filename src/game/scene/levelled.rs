@@ -1,7 +1,7 @@
 //! Levels of what is added and reported, as the scene's policy has them.
 
 use super::Scene;
-use crate::game::clipping::{ClippedBecause, TOLD_DB};
+use crate::game::clipping::{ClipReason, TOLD_DB};
 use crate::game::levels::BodyLevel;
 use crate::model::body::Body;
 use crate::model::config::Config;
@@ -49,7 +49,7 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn why_clipped(&mut self) -> Vec<ClippedBecause> {
+    pub fn why_clipped(&mut self) -> Vec<ClipReason> {
         let stats = self.stats();
         let most = stats.bus_levels.iter().fold(0.0, |most, peak| f64::max(most, f64::from(*peak)));
         let by_db = (stats.limiter_db as f64).max(20.0 * libm::log10(most.max(1e-9)));
@@ -63,26 +63,26 @@ impl Scene {
         because.iter_mut().for_each(|reason| reason.hold(by_db));
         if because.is_empty() {
             let stroked = self.strongest.stroked();
-            let strokes = stroked.map(|(surface, [force_n, speed_m_s])| ClippedBecause::Strokes {
+            let strokes = stroked.map(|(surface, [force_n, speed_m_s])| ClipReason::Strokes {
                 surface,
                 by_db,
                 force_n,
                 speed_m_s,
             });
-            because.push(strokes.unwrap_or(ClippedBecause::Sum { by_db }));
+            because.push(strokes.unwrap_or(ClipReason::Sum { by_db }));
         }
         because
     }
 
     /// The hardest blow on a body, where it alone peaks above full scale.
-    fn blows(&mut self, id: BodyId, impulse_n_s: f64) -> Option<ClippedBecause> {
+    fn blows(&mut self, id: BodyId, impulse_n_s: f64) -> Option<ClipReason> {
         let (body, level) = (self.given.get(&id)?, self.bodies.get(id.0)?.level);
         let bus = self.config.audio.get(body.bus)?.gain;
         let unit = self.levels.peak_per_n_s(&self.config, body).ok()?;
         let peak = unit * impulse_n_s * level.gain * level.strike_gain * body.gain * bus;
         let by_db = 20.0 * libm::log10(peak.max(1e-9));
         let strike_gain = level.strike_gain / peak;
-        (by_db >= TOLD_DB).then_some(ClippedBecause::Blows { body: id, by_db, strike_gain })
+        (by_db >= TOLD_DB).then_some(ClipReason::Blows { body: id, by_db, strike_gain })
     }
 
     /// The level that a body has got.

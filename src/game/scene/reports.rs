@@ -2,7 +2,7 @@
 //! ones, when the way is full.
 
 use super::Scene;
-use crate::game::silence::SilentBecause;
+use crate::game::silence::SilenceReason;
 use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
@@ -57,8 +57,8 @@ impl Scene {
     /// # Ok::<(), asperity::ConfigError>(())
     /// ```
     #[must_use]
-    pub fn why_silent(&self) -> Vec<SilentBecause> {
-        let contradictions = self.motions.contradictions().into_iter().map(SilentBecause::Contradicts);
+    pub fn why_silent(&self) -> Vec<SilenceReason> {
+        let contradictions = self.motions.contradictions().into_iter().map(SilenceReason::Contradicts);
         let mut because = self.reported.why_silent(&self.stats(), &self.config);
         because.extend(contradictions);
         because

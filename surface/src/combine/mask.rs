@@ -41,7 +41,7 @@ impl HeightField for Mask {
     fn properties(&self, tile_m: [f64; 2]) -> Properties {
         let [inside, outside, mask] = self.sources.each_ref().map(|source| source.properties(tile_m));
         let met = inside.union(outside);
-        Properties { beyond: met.beyond.max(mask.beyond), ..met }
+        Properties { extension: met.extension.max(mask.extension), ..met }
     }
 
     fn parts(&mut self) -> &mut [Part] {

@@ -43,7 +43,7 @@ pub struct Reaction {
     pub grain_impulse_n_s: f64,
     /// The ground under the contact is changing, whether it moves or not: a contact that rests must
     /// be computed.
-    pub stirs: bool,
+    pub wakes_contact: bool,
     /// The force that carries a tip where it [stands](TouchKind::Stands), N, 0 above the ground;
     /// none where the ground is hard.
     pub support_force_n: Option<f64>,
@@ -61,7 +61,7 @@ impl Reaction {
         Self {
             grain_rate_per_s: rate,
             grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
-            stirs: self.stirs || part.stirs,
+            wakes_contact: self.wakes_contact || part.wakes_contact,
             support_force_n: carried_n.or(self.support_force_n),
         }
     }

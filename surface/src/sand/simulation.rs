@@ -208,7 +208,7 @@ impl SandSimulation {
     }
 
     /// Tells where a contact is; the last pose before a frame counts.
-    pub fn tell(&mut self, pose: Pose) {
+    pub fn set_pose(&mut self, pose: Pose) {
         let finite = pose.position_m.iter().chain(&pose.velocity_m_s).all(|x| x.is_finite());
         if let Some(track) = self.tracks.get_mut(pose.contact).filter(|_| finite) {
             let normal_force_n = if pose.normal_force_n.is_finite() { pose.normal_force_n } else { 0.0 };

@@ -34,7 +34,7 @@ use super::worker::SandWorker;
 use crate::fade::Fade;
 use crate::force_output::ForceAt;
 use crate::height_field::{
-    Beyond, Finish, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
+    Extension, Finish, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
     TouchKind, WavelengthBand,
 };
 use crate::moving_picture::MovingPicture;
@@ -198,7 +198,7 @@ impl SandSource {
         let pose = Pose { landed: slot.landed, ..pose(touch) };
         match &mut self.link {
             Link::Here(simulation) => {
-                simulation.tell(pose);
+                simulation.set_pose(pose);
                 slot.landed = false;
                 if touch.sample < self.next_frame {
                     return;
@@ -303,11 +303,11 @@ impl SandSource {
             .slots
             .get_mut(touch.contact)
             .map(|slot| slot.turn_over(touch.sample, fade_samples(self.frame_samples), &mut self.spare));
-        let (stirs, displaced_m2) = turned.unwrap_or((false, 0.0));
+        let (wakes_contact, displaced_m2) = turned.unwrap_or((false, 0.0));
         let law = self.law.target();
         let speed = libm::hypot(touch.velocity_m_s[0], touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
-        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs, support_force_n: None }
+        Reaction { grain_rate_per_s, grain_impulse_n_s, wakes_contact, support_force_n: None }
     }
 }
 
@@ -327,7 +327,7 @@ impl HeightField for SandSource {
     fn properties(&self, tile_m: [f64; 2]) -> Properties {
         let shortest_m = self.grains.properties(tile_m).band.shortest_m;
         Properties {
-            beyond: Beyond::Edge,
+            extension: Extension::Edge,
             tip_law: Some(self.tip_law()),
             picture: Some(self.moving_picture.clone()),
             ..Properties::of(WavelengthBand { shortest_m, longest_m: self.longest_m })

@@ -45,7 +45,7 @@ impl SandWorker {
             if let Some(touched) = far.touched.get_mut(pose.contact) {
                 *touched = true;
             }
-            self.simulation.tell(pose);
+            self.simulation.set_pose(pose);
         }
         while let Ok(patch) = far.back.pop() {
             far.spare.push(patch);

@@ -113,7 +113,7 @@ impl Places {
             for (fraction, position_m) in
                 whole.as_flattened_mut().iter_mut().chain(rest).skip(first).zip(last)
             {
-                *fraction = axis.beyond(only, position_m[along]);
+                *fraction = axis.extension(only, position_m[along]);
             }
         }
     }
@@ -273,7 +273,7 @@ impl Axis {
 
     /// Distance of a position beyond that texel, by the steps of [`place`](Self::place).
     #[inline(always)]
-    fn beyond(&self, only: OnlyTexel, position_m: f64) -> f64 {
+    fn extension(&self, only: OnlyTexel, position_m: f64) -> f64 {
         ((position_m * self.texels_per_metre - 0.5) - only.copy) - only.texel
     }
 
