@@ -169,7 +169,7 @@ impl Surface {
     }
 
     /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish
-    /// ([`of`](Self::of)).
+    /// ([`material`](Self::material)).
     ///
     /// ```
     /// use asperity::{Material, Surface};
