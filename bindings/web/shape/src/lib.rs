@@ -16,7 +16,7 @@ use asperity_dsp::damping::Damping;
 use asperity_shape::eigenmodes::Wanted;
 use asperity_shape::ringing::ringing;
 use asperity_shape::vector::longest_side;
-use asperity_shape::{Elastic, Fineness, Making, Mesh, SolvedBody, make_as_fine_as, parse};
+use asperity_shape::{Elastic, Fineness, Making, SolvedBody, make_as_fine_as, parse};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 use std::path::Path;

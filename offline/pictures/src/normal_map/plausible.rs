@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn a_map_that_went_through_a_gamma_is_told_so() {
         let of = |x: usize, y: usize| {
-            [0.5 + 0.25 * (x % 2) as f64, 0.4 + 0.25 * (y % 2) as f64, 0.84 + 0.02 * (x % 2) as f64]
+            [0.4 + 0.2 * (x % 2) as f64, 0.4 + 0.2 * (y % 2) as f64, 0.84 + 0.02 * (x % 2) as f64]
         };
         let error = checked(|x, y| of(x, y).map(|c| c.powf(2.4))).unwrap_err();
         assert!(error.expected.contains("gamma") && !error.expected.contains("photo"), "{error:?}");
