@@ -61,7 +61,8 @@
 //! | [`surface`] | surfaces: sources sampled in real time |
 //! | `asperity-pictures` | surfaces from photographs and normal maps, metamers |
 //! | `asperity` | scenes, events, the two halves, files, offline renders, sound cards |
-//! | `asperity-fit` | a recorded hit becomes modes |
+//! | `asperity-fit`, `asperity-shape` | a recorded hit, a mesh becomes modes |
+//! | `asperity-ports` | clips for phones, headsets and pads |
 //! | `asperity-rapier` | contacts of a physics engine as events |
 //! | `asperity-cli` | the program |
 //!

@@ -21,11 +21,13 @@
 //! | [`held`] | contacts that press on a body → its pitches and decays |
 //! | [`radiation`] | motion of a surface → pressure at 1 m |
 //! | [`damping`] | a material → the decays of its modes |
+//! | [`rolling`] | profile → what a rolling thing feels of it |
 //! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
 //! | [`tangential`] | friction force → skin dragged sideways |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`sensation`], [`vibration_points`] | haptic samples → points for hardware that plays no waveform |
 //! | [`limits`] | what all of them accept |
+//! | [`simd`] | instruction sets, chosen at run time |
 //! | [`rng`] | seeded numbers for all of them |
 //! | [`pair`] | two filters in one register |
 #![no_std]
