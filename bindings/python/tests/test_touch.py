@@ -201,7 +201,7 @@ def test_refused_events_and_silence_are_warned_of(heights_m):
     surface = asp.Surface(heights_m, 0.14)
     rows = asp.contacts.stroke(duration=0.2, extent=surface.extent)
     rows["gain"][3] = -1.0
-    with pytest.warns(asp.TouchWarning, match="1 of 13 events were refused, the first at t = 0.05 s: gain"):
+    with pytest.warns(asp.TouchWarning, match="1 of 13 events was refused, the first at t = 0.05 s: gain"):
         asp.render(surface, rows)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
