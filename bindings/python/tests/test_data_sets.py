@@ -333,7 +333,7 @@ def test_ten_thousand_strokes_on_dask_are_one_processes_bytes_though_a_worker_is
         # And by a worker, where there is no manifest to tell from.
         (tmp_path / "late").mkdir()
         (tmp_path / "late" / "shard-000007.parquet").write_bytes((tmp_path / "cut" / "shard-000007.parquet").read_bytes())
-        with pytest.raises(ValueError, match=r"shard-000007\.parquet: is of another build"):
+        with pytest.raises(ValueError, match=r"shard-000007\.parquet: is of another specification"):
             batch.dask(other, tmp_path / "late", client, shard="7/40", retries=0)
         peaks_mib = list(client.run(peak_mib).values())
     print(f"{told.kept} shards were there, {told.made} were made; workers held {max(peaks_mib):.0f} MiB at most")
