@@ -43,7 +43,8 @@ fn main() {
 
 fn level(mut commands: Commands) {
     let plate = Body::stock(Stock::Plate, Material::CERAMIC, 0.4).expect("0.4 m is a plate's size");
-    let top = Surface::flat(0.4, 0.4).expect("0.4 m is a surface's size").material(Material::CERAMIC).wraps(false);
+    let top =
+        Surface::flat(0.4, 0.4).expect("0.4 m is a surface's size").material(Material::CERAMIC).wraps(false);
     commands.spawn((
         TouchBody(plate),
         TouchSurface::new(top),

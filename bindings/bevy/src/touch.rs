@@ -5,7 +5,7 @@ use crate::component::{TouchProbe, TouchSurface};
 use crate::event::{TouchError, TouchEvent};
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::{
-    ChannelId, Body, BodyId, ContactEvent, ContactId, Impact, ProbeId, Scene, Stats, SurfaceId, Touching,
+    Body, BodyId, ChannelId, ContactEvent, ContactId, Impact, ProbeId, Scene, Stats, SurfaceId, Touching,
 };
 use bevy_ecs::prelude::*;
 use std::collections::HashMap;
