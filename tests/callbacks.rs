@@ -13,7 +13,7 @@ use common::{SIDE_M, peak, rms};
 const RATE_HZ: f64 = 48_000.0;
 const TICK: usize = 800;
 
-/// What the tests' game does beside reports.
+/// Actions of the tests' game beside reports.
 impl Game {
     fn live() -> Self {
         let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };

@@ -118,7 +118,7 @@ fn reported(stroke: &Stroke, wraps: bool, mut also: impl FnMut(&mut Scene, f64))
     scene
 }
 
-/// What is told that no single report shows: times that stand, forces and blows.
+/// Slips that no single report shows: times that stand, forces and blows.
 fn habits(scene: &Scene) -> Vec<SilenceReason> {
     let mut told = scene.why_silent();
     told.retain(|reason| {

@@ -20,6 +20,10 @@ const BLOWS_IN_A_ROW: u64 = 30;
 const LONGEST_STEP_S: f64 = 0.025;
 /// Steps of one game differ by a smaller factor.
 const ALIKE: f64 = 1.6;
+/// Contacts, and bodies, kept at most beside those of the last [`KEPT_S`].
+const MOST_KEPT: usize = 1024;
+/// Time for which a contact or body without a report is kept where there are many, s.
+const KEPT_S: f64 = 1.0;
 
 /// Reports that follow each other.
 #[derive(Debug, Default)]
@@ -66,6 +70,13 @@ impl Slips {
     /// a finger or a light tool.
     pub(crate) fn note(&mut self, time_s: f64, event: &ContactEvent, is_light: bool) {
         self.goes_on |= *self.first_s.get_or_insert(time_s) != time_s;
+        // Bodies come and go by the thousand, and contacts end with them.
+        if self.contacts.len() > MOST_KEPT {
+            self.contacts.retain(|_, touch| (time_s - touch.time_s).abs() < KEPT_S);
+        }
+        if self.blows.len() > MOST_KEPT {
+            self.blows.retain(|_, blows| (time_s - blows.time_s).abs() < KEPT_S);
+        }
         match event {
             ContactEvent::Begin { contact, sample, .. } => {
                 self.contacts.insert(*contact, Touch { time_s, uv: sample.uv, is_light });
@@ -141,5 +152,25 @@ impl Blows {
         let goes_on = goes_on && (before == 0 || now == before);
         self.in_a_row = if goes_on { self.in_a_row.max(1) + 1 } else { 0 };
         (self.time_s, self.step_s, self.count) = (time_s, step_s, [1, now]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::event::Impact;
+
+    #[test]
+    fn bodies_that_are_struck_once_and_gone_take_no_memory() {
+        let mut slips = Slips::default();
+        for n in 0..100_000_u64 {
+            let impact = Impact::on(BodyId::from_bits(n << 32));
+            slips.note(n as f64 / 60.0, &ContactEvent::Impact(impact), false);
+        }
+        assert!(
+            slips.blows.len() <= MOST_KEPT + 1 && slips.at_every_step().is_none(),
+            "{}",
+            slips.blows.len()
+        );
     }
 }

@@ -6,7 +6,7 @@
 //! | `default` | exact between events | 1 | all within 120 dB of the loudest |
 //! | `accurate` | exact between events | 8 | all |
 //!
-//! What each costs and how far it is from the whole chain in f64 at 16 times the rate is printed
+//! The cost of each, and its distance from the whole chain in f64 at 16 times the rate, are printed
 //! by `asperity report`. `fast` takes 0.85 of the instructions of `default` on a contact that is
 //! pressed firmly, 0.65 of the time on the report's cases, where `default` looks at the ground
 //! between samples, and less where tables of modes are dense. Its levels are right (third octaves

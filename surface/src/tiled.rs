@@ -76,7 +76,7 @@ impl TileAxis {
 
     /// Beginning of the tile that all places from `low_m` to `high_m` lie in, well inside and
     /// before its blend: each is then [at](TilePosition::at_m) its distance from there, to the bit.
-    /// None where they may lie otherwise.
+    /// `None` where they may lie otherwise.
     #[must_use]
     pub fn begin_of_all_m(&self, low_m: f64, high_m: f64) -> Option<f64> {
         if !self.length_m.is_finite() {
