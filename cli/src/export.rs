@@ -11,7 +11,7 @@
 //! Numbers are single precision there. The draft knows neither loudness nor a residual: whoever
 //! reads it takes a mode's loudness from its shape.
 
-mod binary;
+pub mod binary;
 
 use crate::error::CliError;
 use crate::import::EXTENSION;

@@ -9,7 +9,9 @@ pub mod from_normals;
 pub mod from_photo;
 pub mod metamer;
 pub mod object;
+pub mod rank;
 pub mod solid;
+pub mod solid_of;
 
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -25,10 +27,12 @@ pub enum Verb {
     Analyze(analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
+    SolidOf(solid_of::Options),
     Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
     Metamer(metamer::Options),
+    Rank(rank::Options),
 }
 
 /// Runs the verb.
@@ -40,10 +44,12 @@ pub fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Analyze(options) => analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
+        Verb::SolidOf(options) => solid_of::run(&options),
         Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
         Verb::Metamer(options) => metamer::run(&options),
+        Verb::Rank(options) => rank::run(&options),
     }
 }
 

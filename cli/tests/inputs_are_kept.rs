@@ -14,7 +14,7 @@ use support::{MODES, asperity, assert_refused, stroke, told};
 /// A verb and its inputs, `OUT` standing for the output, and which file the output is.
 type Case = (&'static [&'static str], &'static str);
 
-const CASES: [Case; 28] = [
+const CASES: [Case; 29] = [
     (&["fit", "hit.json", "-o", "OUT"], "hit.json"),
     (&["fit", "hit.wav", "-o", "a.json", "--residual", "OUT"], "hit.wav"),
     (&["fit", "hit.wav", "-o", "a.json", "--resynthesis", "OUT"], "hit.wav"),
@@ -39,6 +39,7 @@ const CASES: [Case; 28] = [
     (&["texture", "from-normals", "a.png", "-o", "OUT"], "a.png"),
     (&["texture", "from-normals", "a.stl", "-o", "c.png", "--stl", "OUT"], "a.stl"),
     (&["texture", "analyze", "a.png", "--primitive", "OUT"], "a.png"),
+    (&["texture", "solid-of", "a.stl", "-o", "OUT"], "a.stl"),
     (&["texture", "from-photo", "a.stl", "-o", "photo", "--stl", "OUT"], "a.stl"),
     (
         &[

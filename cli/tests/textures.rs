@@ -185,6 +185,35 @@ fn a_metamer_is_an_object_of_the_size_told_and_coarse_texels_are_warned_of() {
 }
 
 #[test]
+fn a_height_map_is_a_thing_to_hold_of_the_size_told_in_either_format() {
+    let rough = |x: usize, y: usize| 0.2 + 0.6 * (((x * 37 + y * 91) % 53) as f64 / 52.0);
+    let scene = with_maps(&[("rough.png", Raster::from_fn(24, 16, rough))]);
+    let sizes = ["--relief-mm", "1.5", "--width-mm", "30", "--base-mm", "3"];
+    let make = |output: &str| report(&scene, &[&["solid-of", "rough.png", "-o", output], &sizes[..]].concat());
+    let made = make("rough.stl");
+    let (volume, size, closed) = solid(&std::fs::read(scene.path("rough.stl")).unwrap());
+    let heights = grey(&scene, "rough.png");
+    let (low, high) = heights.range();
+    let exact = [30.0, 20.0, 3.0 + 1.5 * (high - low)];
+    assert!(closed && size.iter().zip(exact).all(|(size, told)| (size / told - 1.0).abs() < 1e-6), "{size:?}");
+    let exact = 600.0 * (3.0 + 1.5 * (heights.mean() - low));
+    assert!((volume / exact - 1.0).abs() < 1e-5 && (number(&made, "volume_mm3") / exact - 1.0).abs() < 1e-12);
+    // The mesh solver reads the other format, and finds it as large; a thing of plastic weighs that.
+    make("rough.glb");
+    let solve = ["modes", "rough.glb", "--material", "plastic", "--max-modes", "3", "-o", "r.json", "--json"];
+    let told = asperity(scene.folder.path(), &solve);
+    let solved: Value = serde_json::from_slice(&told.stdout).unwrap();
+    assert!((number(&solved, "volume_m3") * 1e9 / exact - 1.0).abs() < 0.05, "{solved}");
+    let refused = |output: &str, base: &str| {
+        let arguments = ["texture", "solid-of", "rough.png", "-o", output, "--base-mm", base];
+        assert_refused(&asperity(scene.folder.path(), &arguments), &[if base == "3" { ".glb" } else { "base_m" }]);
+        assert!(!scene.path(output).exists());
+    };
+    refused("rough.obj", "3");
+    refused("other.stl", "1e9");
+}
+
+#[test]
 fn a_map_matched_to_itself_is_the_same_file_whatever_the_options() {
     let scene = with_maps(&[("map.png", ridges(64))]);
     for more in [

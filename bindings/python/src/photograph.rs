@@ -3,7 +3,7 @@
 use crate::error::{refused, refused_at};
 use crate::interrupt::Pulse;
 use crate::pictures::{array, raster};
-use asperity_evidence::compare::{Comparison, STROKES, Table, all_like_the_first};
+use asperity_evidence::compare::{Asked, Comparison, STROKES, Table, all_like_the_first};
 use asperity_pictures::from_photo::{DECIDED, PhotoOptions, PhotoSurface, reduced, surface_from_photo};
 use asperity_pictures::light::Light;
 use asperity_pictures::photograph::load_photograph;
@@ -141,7 +141,7 @@ pub fn compare<'py>(
         }
     }
     let maps = maps.iter().map(raster).collect::<PyResult<Vec<_>>>()?;
-    let comparison = Comparison { strokes, width_m, relief_m, seed };
+    let comparison = Comparison { asked: Asked::Machine, strokes, width_m, relief_m, seed };
     let parts = if iterations.is_some() { 3.0 } else { 1.0 };
     let pulse = Pulse::new(progress);
     let tables = py.detach(|| {

@@ -1,11 +1,11 @@
-//! `asperity texture compare A B …`: can a finger tell them apart? Document 002's ABX tables
-//! without observers.
+//! `asperity texture compare A B …`: can a finger tell them apart? The ABX tables of a published
+//! study without its participants.
 
 use super::{grey, positive, refused};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use asperity_evidence::compare::{self, Comparison, Table};
+use asperity_evidence::compare::{self, Asked, Comparison, Table};
 use asperity_pictures::metamer::{Method, PASSES};
 use asperity_surface::raster::Raster;
 use clap::Args;
@@ -21,6 +21,10 @@ pub struct Options {
     /// Also compare metamers of all maps to the first: single pass and default
     #[arg(long)]
     pub metamers: bool,
+    /// Ask the observer with people's thresholds and difference limens, who misses what a finger
+    /// misses, instead of a machine that misses next to nothing
+    #[arg(long)]
+    pub observer: bool,
     /// Strokes on each surface
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(20..=10_000))]
     pub strokes: usize,
@@ -48,9 +52,16 @@ struct Report {
     width_m: f64,
     relief_m: f64,
     seed: u64,
+    judge: Asked,
     originals: Table,
     single_pass: Option<Table>,
     metamers: Option<Table>,
+}
+
+impl Options {
+    fn asked(&self) -> Asked {
+        if self.observer { Asked::Observer } else { Asked::Machine }
+    }
 }
 
 /// Runs the verb.
@@ -74,6 +85,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         width_m: options.width_m,
         relief_m: options.relief_m,
         seed: options.seed,
+        judge: options.asked(),
         originals,
         single_pass: matched(Method::SinglePass, 1)?,
         metamers: matched(Method::Iterated(options.iterations), 2)?,
@@ -95,7 +107,7 @@ fn all_like_the_first(options: &Options, maps: &[Raster], method: Method) -> Res
 
 fn table(options: &Options, maps: &[Raster], set: u64, progress: &mut Progress) -> Result<Table, CliError> {
     let &Options { strokes, width_m, relief_m, seed, .. } = options;
-    let comparison = Comparison { strokes, width_m, relief_m, seed };
+    let comparison = Comparison { asked: options.asked(), strokes, width_m, relief_m, seed };
     comparison
         .table(maps, set, || progress.advance(1))
         .map_err(|(place, error)| CliError::from_error(error).within(options.maps[place].display()))

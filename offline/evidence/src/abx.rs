@@ -47,9 +47,9 @@ pub const NOISE_M: f64 = 1e-8;
 /// λ over the mean variance.
 pub const SHRINKAGE: f64 = 0.01;
 /// Parts in cross-validation.
-const FOLDS: usize = 10;
+pub const FOLDS: usize = 10;
 /// Rate of the strokes, Hz.
-const RATE_HZ: f64 = 22_050.0;
+pub const RATE_HZ: f64 = 22_050.0;
 /// Events a second.
 const EVENTS_HZ: f64 = 100.0;
 
@@ -65,7 +65,7 @@ pub struct Size {
     pub relief_m: f64,
 }
 
-/// Strokes a surface (heights 0–1) at random.
+/// Strokes a surface (heights 0–1) at random; levels of each.
 ///
 /// # Errors
 /// When the engine refuses the surface.
@@ -76,6 +76,22 @@ pub fn strokes(
     count: usize,
     seed: u64,
 ) -> Result<Vec<Features>, FileError> {
+    let mut levels = Levels::new((STROKE_S * RATE_HZ) as usize);
+    displacements(heights, tiles, size, (count, seed), |samples| levels.of(samples))
+}
+
+/// Strokes a surface (heights 0–1) at random; what `each` makes of the displacement, m, of each at
+/// [`RATE_HZ`].
+///
+/// # Errors
+/// When the engine refuses the surface.
+pub fn displacements<T>(
+    heights: &Raster,
+    tiles: bool,
+    size: Size,
+    (count, seed): (usize, u64),
+    mut each: impl FnMut(&[f32]) -> T,
+) -> Result<Vec<T>, FileError> {
     let (width_m, height_m) = (heights.width as f64 * size.texel_m, heights.height as f64 * size.texel_m);
     let extent = Extent { width_m, height_m, relief_m: size.relief_m };
     let wrap = if tiles { Wrap::Repeat } else { Wrap::Mirror };
@@ -96,12 +112,11 @@ pub fn strokes(
     let options = Options { tail_s: PAUSE_S, ..Options::default() };
     let render = offline::render(scene, renderer, &log, &names, &options).map_err(FileError::from_error)?;
     let length = (STROKE_S * RATE_HZ) as usize;
-    let mut levels = Levels::new(length);
     let start = |stroke: usize| {
         let begin_s = stroke as f64 * (LANDING_S + STROKE_S + PAUSE_S) + LANDING_S;
         (begin_s * RATE_HZ) as usize + latency
     };
-    Ok((0..count).map(|stroke| levels.of(&render.haptic[0][start(stroke)..start(stroke) + length])).collect())
+    Ok((0..count).map(|stroke| each(&render.haptic[0][start(stroke)..start(stroke) + length])).collect())
 }
 
 fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
@@ -182,10 +197,11 @@ pub fn right_answers(a: &[Features], b: &[Features]) -> f64 {
     right as f64 / (a.len() + b.len()) as f64
 }
 
-fn split(strokes: &[Features], fold: usize) -> (Vec<Features>, Vec<Features>) {
+/// Strokes to learn from and strokes to ask, of a part of the cross-validation.
+pub fn split<T: Clone>(strokes: &[T], fold: usize) -> (Vec<T>, Vec<T>) {
     let of = |test: bool| {
         let kept = strokes.iter().enumerate().filter(move |(i, _)| (i % FOLDS == fold) == test);
-        kept.map(|(_, stroke)| *stroke).collect()
+        kept.map(|(_, stroke)| stroke.clone()).collect()
     };
     (of(false), of(true))
 }

@@ -1,6 +1,7 @@
 //! Comparison: how often strokes on each of several surfaces are put on the right one, as a table.
 
-use crate::abx::{self, Features, Size};
+use crate::abx::{self, Size};
+use crate::likeness;
 use asperity::files::FileError;
 use asperity_pictures::borders::Borders;
 use asperity_pictures::metamer::{MetamerOptions, Method, metamer};
@@ -10,9 +11,21 @@ use serde::Serialize;
 /// Fewest and most strokes on a surface.
 pub const STROKES: [usize; 2] = [20, 10_000];
 
+/// Judge of strokes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asked {
+    /// A linear discriminant that misses next to nothing ([`abx`]).
+    Machine,
+    /// The observer with people's thresholds and difference limens ([`likeness`]).
+    Observer,
+}
+
 /// Strokes over the surfaces.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
+    /// Judge of the strokes.
+    pub asked: Asked,
     /// Strokes on each surface.
     pub strokes: usize,
     /// Width of a map on the surface, m.
@@ -47,22 +60,36 @@ impl Comparison {
         &self,
         maps: &[Raster],
         set: u64,
+        progress: impl FnMut(),
+    ) -> Result<Table, (usize, FileError)> {
+        match self.asked {
+            Asked::Machine => self.told_by(maps, set, abx::strokes, abx::right_answers, progress),
+            Asked::Observer => self.told_by(maps, set, likeness::percepts, likeness::right_answers, progress),
+        }
+    }
+
+    /// The table by one judge: what it knows of strokes, and its share of right answers.
+    fn told_by<T>(
+        &self,
+        maps: &[Raster],
+        set: u64,
+        known: impl Fn(&Raster, bool, Size, usize, u64) -> Result<Vec<T>, FileError>,
+        right_answers: impl Fn(&[T], &[T]) -> f64,
         mut progress: impl FnMut(),
     ) -> Result<Table, (usize, FileError)> {
-        let mut felt: Vec<Vec<Features>> = Vec::new();
+        let mut felt: Vec<Vec<T>> = Vec::new();
         for (index, map) in maps.iter().enumerate() {
             let size = Size { texel_m: self.width_m / map.width as f64, relief_m: self.relief_m };
             let tiles = Borders::Detect.decide(map) == Borders::Periodic;
             let seed = self.seed.wrapping_mul(1000).wrapping_add(set * 100 + index as u64);
             // Twice as many: the second half is the same surface stroked again.
-            let strokes = abx::strokes(map, tiles, size, 2 * self.strokes, seed);
-            felt.push(strokes.map_err(|error| (index, error))?);
+            felt.push(known(map, tiles, size, 2 * self.strokes, seed).map_err(|error| (index, error))?);
             progress();
         }
         let n = self.strokes;
         let cell = |i: usize, j: usize| {
             let other = if i == j { &felt[j][n..] } else { &felt[j][..n] };
-            abx::right_answers(&felt[i][..n], other)
+            right_answers(&felt[i][..n], other)
         };
         let size = maps.len();
         let rows: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| cell(i, j)).collect()).collect();

@@ -17,7 +17,7 @@
 //! | [`exact_brownian`] | surfaces of known fractal dimension |
 //! | [`process`] | time and memory that this process took |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
-//! | `abx`, `compare` | surfaces told apart by strokes through the engine (feature `judges`) |
+//! | `abx`, `compare`, `likeness` | surfaces told apart, and ordered, by strokes through the engine (feature `judges`) |
 
 #[cfg(feature = "judges")]
 pub mod abx;
@@ -28,6 +28,8 @@ pub mod corpus;
 pub mod cramer_rao;
 pub mod exact_brownian;
 pub mod impact;
+#[cfg(feature = "judges")]
+pub mod likeness;
 pub mod observer;
 pub mod process;
 pub mod score;

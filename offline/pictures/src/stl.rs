@@ -1,11 +1,13 @@
-//! Heights as a closed block for a 3-D printer: binary STL, in millimetres.
+//! Heights as a closed block: for a 3-D printer (binary STL, in millimetres), or as a mesh in metres.
 //!
 //! ```text
 //! x = u        y = depth − v        z = base + h(u, v) − lowest h
 //! ```
 //! The top has a vertex at every texel's centre and one at the edge beside every outermost texel,
 //! so that the block is exactly as wide as the map; walls go down to z = 0 and a fan closes the
-//! bottom. Seen from above it looks like the map. STL has no unit; printers read millimetres.
+//! bottom. A cell of four texels is cut along one diagonal, but for those in the corners of the map,
+//! which are cut four ways, so that the volume is area × (base + mean height over the lowest) to the
+//! rounding of the vertices. Seen from above it looks like the map. STL has no unit; printers read millimetres.
 //! Source: the embodiment of the metamers is an object of known thickness from a 3-D printer that
 //! resolves less than [`FINEST_TEXEL_M`].
 //!
@@ -23,6 +25,8 @@
 
 use asperity_dsp::DesignError;
 use asperity_surface::raster::Raster;
+use std::collections::HashMap;
+use std::convert::Infallible;
 use std::io::{self, Write};
 
 /// Texels above this size, m, are felt as facets: the document prefers printers that are finer than
@@ -78,8 +82,9 @@ impl<'a> Block<'a> {
     #[must_use]
     pub fn triangles(&self) -> u64 {
         let [columns, rows] = [self.heights_m.width, self.heights_m.height].map(|n| n as u64 + 1);
-        // Two a cell of the top; two of the wall and one of the bottom an edge of the rim.
-        2 * columns * rows + 3 * 2 * (columns + rows)
+        let fans = columns.saturating_sub(2).min(2) * rows.saturating_sub(2).min(2);
+        // Two a cell of the top, or four; two of the wall and one of the bottom an edge of the rim.
+        2 * columns * rows + 2 * fans + 3 * 2 * (columns + rows)
     }
 
     /// Bytes that [`Self::write_stl`] writes.
@@ -97,38 +102,67 @@ impl<'a> Block<'a> {
         header[..HEADER.len()].copy_from_slice(HEADER);
         out.write_all(&header)?;
         out.write_all(&u32::try_from(self.triangles()).unwrap_or(u32::MAX).to_le_bytes())?;
-        self.write_top(&mut out)?;
-        self.write_walls_and_bottom(&mut out)
+        self.each_triangle(MM_PER_M, |corners| write_triangle(&mut out, corners))
     }
 
-    fn write_top(&self, out: &mut impl Write) -> io::Result<()> {
-        for row in 0..=self.heights_m.height {
-            for column in 0..=self.heights_m.width {
-                let [far, near] = [row, row + 1];
-                let [a, b] = [self.top(column, near), self.top(column + 1, near)];
-                let [c, d] = [self.top(column + 1, far), self.top(column, far)];
-                write_triangle(out, [a, b, c])?;
-                write_triangle(out, [a, c, d])?;
+    /// Vertices, m, each once, and the corners of the triangles.
+    #[must_use]
+    pub fn mesh(&self) -> (Vec<[f32; 3]>, Vec<u32>) {
+        let (mut vertices, mut corners) = (Vec::new(), Vec::with_capacity(3 * self.triangles() as usize));
+        let mut known = HashMap::new();
+        let mut index = |vertex: Vertex| {
+            *known.entry(vertex.map(f32::to_bits)).or_insert_with(|| {
+                vertices.push(vertex);
+                vertices.len() as u32 - 1
+            })
+        };
+        let Ok(()) = self.each_triangle(1.0, |triangle| {
+            corners.extend(triangle.map(&mut index));
+            Ok::<(), Infallible>(())
+        });
+        (vertices, corners)
+    }
+
+    /// Hands out every triangle, counter-clockwise seen from outside, in these units.
+    fn each_triangle<E>(
+        &self,
+        units_per_m: f64,
+        mut emit: impl FnMut([Vertex; 3]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let unit = |[x, y, z]: [f64; 3]| [x, y, z].map(|m| (m * units_per_m) as f32);
+        for (row, column) in
+            (0..=self.heights_m.height).flat_map(|row| (0..=self.heights_m.width).map(move |at| (row, at)))
+        {
+            let around = [(0, 1), (1, 1), (1, 0), (0, 0)].map(|(x, y)| self.top(column + x, row + y));
+            let [a, b, c, d] = around.map(unit);
+            if self.is_corner(column, row) {
+                let middle = unit([0, 1, 2].map(|axis| around.iter().map(|p| p[axis]).sum::<f64>() / 4.0));
+                [[a, b], [b, c], [c, d], [d, a]].into_iter().try_for_each(|[from, to]| emit([from, to, middle]))?;
+            } else {
+                emit([a, b, c])?;
+                emit([a, c, d])?;
             }
         }
+        let [width, depth, _] = self.size_m();
+        let middle = unit([0.5 * width, 0.5 * depth, 0.0]);
+        let rim = self.rim().into_iter().map(unit).collect::<Vec<_>>();
+        for (from, to) in rim.iter().zip(rim.iter().cycle().skip(1)) {
+            let below = |vertex: &Vertex| [vertex[0], vertex[1], 0.0];
+            emit([below(from), below(to), *to])?;
+            emit([below(from), *to, *from])?;
+            emit([below(to), below(from), middle])?;
+        }
         Ok(())
     }
 
-    fn write_walls_and_bottom(&self, out: &mut impl Write) -> io::Result<()> {
-        let [width, depth, _] = self.size_m().map(|m| (0.5 * m * MM_PER_M) as f32);
-        let middle = [width, depth, 0.0];
-        let rim = self.rim();
-        for (from, to) in rim.iter().zip(rim.iter().cycle().skip(1)) {
-            let below = |vertex: &Vertex| [vertex[0], vertex[1], 0.0];
-            write_triangle(out, [below(from), below(to), *to])?;
-            write_triangle(out, [below(from), *to, *from])?;
-            write_triangle(out, [below(to), below(from), middle])?;
-        }
-        Ok(())
+    /// Tests whether a cell of four texels has a corner texel among them.
+    fn is_corner(&self, column: usize, row: usize) -> bool {
+        let ends = |at: usize, n: usize| (1..n).contains(&at) && (at == 1 || at + 1 == n);
+        ends(column, self.heights_m.width) && ends(row, self.heights_m.height)
     }
 
     /// The edge of the top, counter-clockwise seen from above.
-    fn rim(&self) -> Vec<Vertex> {
+    fn rim(&self) -> Vec<[f64; 3]> {
         let (right, near) = (self.heights_m.width + 1, self.heights_m.height + 1);
         let mut rim = Vec::with_capacity(2 * (right + near));
         rim.extend((0..right).map(|column| self.top(column, near)));
@@ -138,16 +172,15 @@ impl<'a> Block<'a> {
         rim
     }
 
-    /// A vertex of the top, mm: columns and rows 0 and n + 1 are the edges, those between the
+    /// A vertex of the top, m: columns and rows 0 and n + 1 are the edges, those between the
     /// centres of texels.
-    fn top(&self, column: usize, row: usize) -> Vertex {
+    fn top(&self, column: usize, row: usize) -> [f64; 3] {
         let (w, h) = (self.heights_m.width, self.heights_m.height);
         let along = |at: usize, n: usize| (at as f64 - 0.5).clamp(0.0, n as f64) * self.texel_m;
         let inside = |at: usize, n: usize| at.clamp(1, n) - 1;
         let height_m = self.heights_m.at(inside(column, w), inside(row, h)) - self.lowest_m;
         let depth_m = h as f64 * self.texel_m;
-        let place = [along(column, w), depth_m - along(row, h), self.base_m + height_m];
-        place.map(|m| (m * MM_PER_M) as f32)
+        [along(column, w), depth_m - along(row, h), self.base_m + height_m]
     }
 }
 
@@ -184,6 +217,32 @@ mod tests {
         let hole = Raster::from_fn(2, 2, |x, _| if x == 0 { f64::NAN } else { 0.0 });
         assert_eq!(refused(&hole, 1e-4, 1e-3), "heights");
         assert_eq!(refused(&Raster::constant(8192, 8192, 0.0), 1e-4, 1e-3), "triangles");
+    }
+
+    #[test]
+    fn a_block_of_any_number_of_texels_is_closed_and_weighs_what_its_heights_do() {
+        let mut rng = asperity_dsp::rng::Rng::new(5);
+        for (w, h) in [(1, 1), (1, 4), (2, 2), (2, 5), (3, 3), (7, 4)] {
+            let heights = Raster::from_fn(w, h, |_, _| 1e-3 * rng.uniform());
+            let block = Block::new(&heights, 2e-3, 1e-3).unwrap();
+            let (vertices, corners) = block.mesh();
+            assert_eq!(corners.len() as u64, 3 * block.triangles());
+            let (mut edges, mut volume_m3) = (HashMap::new(), 0.0);
+            for corners in corners.as_chunks::<3>().0 {
+                let [a, b, c] = corners.map(|corner| vertices[corner as usize].map(f64::from));
+                volume_m3 += (a[0] * (b[1] * c[2] - b[2] * c[1])
+                    + a[1] * (b[2] * c[0] - b[0] * c[2])
+                    + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                    / 6.0;
+                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i], corners[j])) {
+                    *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+                }
+            }
+            assert!(edges.values().all(|sum| *sum == 0), "{w} × {h}");
+            let mean_m = 1e-3 + heights.mean() - heights.range().0;
+            let told = block.size_m()[0] * block.size_m()[1] * mean_m;
+            assert!((volume_m3 / told - 1.0).abs() < 1e-5, "{w} × {h}: {volume_m3} {told}");
+        }
     }
 
     #[test]

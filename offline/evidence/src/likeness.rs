@@ -1,0 +1,123 @@
+//! Likeness of surfaces to the touch: the strokes of [`abx`], felt by the [observer] with people's
+//! thresholds and difference limens.
+//!
+//! ```text
+//! d′² = Σ (m_a − m_b)² / (σ² + (v_a + v_b)/2)
+//! ```
+//! m, v: mean and variance of a feature over the strokes of a surface; σ: the observer's own
+//! deviation. d′ is what one stroke tells somebody who knows both surfaces: 1 is about a just
+//! noticeable difference. Both surfaces are stroked at the same places, directions, speeds and
+//! forces, so that a surface is at distance 0 from itself.
+
+use crate::abx::{self, FOLDS, RATE_HZ, Size};
+use crate::observer::touch::{Unit, felt};
+use crate::observer::{Judge, Percept};
+use asperity::files::FileError;
+use asperity_dsp::rng::Rng;
+use asperity_pictures::borders::Borders;
+use asperity_surface::raster::Raster;
+
+/// Samples of a stroke that become one: touch ends at 1 kHz.
+const EVERY: usize = 8;
+
+/// Percepts of strokes over a surface (heights 0–1).
+///
+/// # Errors
+/// When the engine refuses the surface.
+pub fn percepts(
+    heights: &Raster,
+    tiles: bool,
+    size: Size,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<Percept>, FileError> {
+    abx::displacements(heights, tiles, size, (count, seed), |samples| {
+        let low = samples.chunks_exact(EVERY).map(|x| x.iter().map(|x| f64::from(*x)).sum::<f64>());
+        let low: Vec<f64> = low.map(|sum| sum / EVERY as f64).collect();
+        felt(&low, RATE_HZ / EVERY as f64, Unit::Displacement, None)
+    })
+}
+
+/// Share of strokes that the observer, who has learned from the others, puts on the right surface.
+#[must_use]
+pub fn right_answers(a: &[Percept], b: &[Percept]) -> f64 {
+    let mut rng = Rng::new(1);
+    let mut right = 0;
+    for fold in 0..FOLDS {
+        let (learn_a, test_a) = abx::split(a, fold);
+        let (learn_b, test_b) = abx::split(b, fold);
+        let judge = Judge::new(vec![learn_a, learn_b], 1.0);
+        let mut count = |trials: &[Percept], class| {
+            right += trials.iter().filter(|trial| judge.answer(trial, &mut rng) == class).count();
+        };
+        count(&test_a, 0);
+        count(&test_b, 1);
+    }
+    right as f64 / (a.len() + b.len()).max(1) as f64
+}
+
+/// A surface as strokes tell it: mean, variance and the observer's deviation of each feature.
+#[derive(Debug, Clone)]
+pub struct Impression {
+    features: Vec<[f64; 3]>,
+}
+
+impl Impression {
+    /// The impression of `count` strokes over a map (heights 0–1) of this width and relief, m.
+    ///
+    /// # Errors
+    /// When the engine refuses the surface.
+    pub fn of(map: &Raster, width_m: f64, relief_m: f64, (count, seed): (usize, u64)) -> Result<Self, FileError> {
+        let size = Size { texel_m: width_m / map.width as f64, relief_m };
+        let tiles = Borders::Detect.decide(map) == Borders::Periodic;
+        let percepts = percepts(map, tiles, size, count, seed)?;
+        let features = percepts.first().map_or(0, |percept| percept.features.len());
+        let told = |feature: usize| {
+            let values = || percepts.iter().map(|percept| percept.features[feature].value);
+            let mean = values().sum::<f64>() / count as f64;
+            let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64;
+            [mean, variance, percepts[0].features[feature].sd]
+        };
+        Ok(Self { features: (0..features).map(told).collect() })
+    }
+
+    /// d′ between two surfaces.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        let each = self.features.iter().zip(&other.features);
+        let terms = each.map(|([m, v, sd], [n, w, _])| (m - n).powi(2) / (sd * sd + 0.5 * (v + w)));
+        terms.filter(|term| term.is_finite()).sum::<f64>().sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn grid(period: f64, height: f64) -> Raster {
+        let wave = |i: usize| (TAU * i as f64 / period).sin();
+        Raster::from_fn(64, 64, |x, y| 0.5 + 0.25 * height * (wave(x) + wave(y)))
+    }
+
+    #[test]
+    fn what_is_below_every_threshold_is_one_surface_to_the_observer_and_two_to_the_machine() {
+        let size = Size { texel_m: 1.5e-4, relief_m: 1e-7 };
+        let strokes = |period, seed| percepts(&grid(period, 1.0), true, size, 60, seed).unwrap();
+        let told = right_answers(&strokes(16.0, 1), &strokes(8.0, 2));
+        assert!((told - 0.5).abs() < 0.13, "{told}");
+        let levels = |period, seed| abx::strokes(&grid(period, 1.0), true, size, 60, seed).unwrap();
+        let told = abx::right_answers(&levels(16.0, 1), &levels(8.0, 2));
+        assert!(told > 0.9, "{told}");
+    }
+
+    #[test]
+    fn a_surface_is_nearest_to_itself_and_the_further_the_more_it_is_changed() {
+        let impression = |height| Impression::of(&grid(8.0, height), 0.0096, 1e-4, (30, 7)).unwrap();
+        let original = impression(1.0);
+        let distances = [1.0, 0.9, 0.5, 0.1].map(|height| original.distance(&impression(height)));
+        assert!(distances[0] == 0.0 && distances.is_sorted(), "{distances:?}");
+        // 0.9 dB is less than people notice at most frequencies, 20 dB is not missed.
+        assert!(distances[1] < 1.2 && distances[3] > 3.0, "{distances:?}");
+    }
+}
