@@ -8,6 +8,7 @@
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use asperity_dsp::limits::{self, Range};
 use asperity_dsp::micro_contact as contact;
+use asperity_surface::grating;
 use asperity_surface::sand::SandLaw;
 
 /// Moment at which a new value is heard and felt.
@@ -265,12 +266,14 @@ parameters! {
         LACUNARITY: "lacunarity", "", limits::solid::LACUNARITY, "Ratio of frequencies from octave to octave";
         PERSISTENCE: "persistence", "", limits::solid::PERSISTENCE, "Ratio of amplitudes from octave to octave";
         TEXTURE_FACTOR_PER_M: "texture_factor_per_m", "1/m", limits::solid::TEXTURE_FACTOR_PER_M, "T";
-        AMPLITUDE_M: "amplitude_m", "m", limits::solid::AMPLITUDE_M, "A, height per unit of magnitude";
+        AMPLITUDE_M: "amplitude_m", "m", limits::solid::AMPLITUDE_M, "A, height per unit of magnitude; of a grating, of its tops";
         LIMIT_N: "limit_n", "N", limits::solid::LIMIT_N, "L, force per unit of magnitude";
         CAP_N: "cap_n", "N", limits::solid::CAP_N, "Largest texture force";
         VISCOSITY_N_S_M: "viscosity_n_s_m", "N·s/m", limits::solid::VISCOSITY_N_S_M, "b, drag of the medium";
         FLOW_M_S: "flow_m_s", "m/s", limits::solid::FLOW_M_S,
             "Flow of the block along u, v and out of the surface, each; one number is out of it", or(0.0);
+        PITCH_M: "pitch_m", "m", grating::PITCH_M, "Period of a grating";
+        DUTY: "duty", "", grating::DUTY, "Share of the period that a grating's ridge or dot takes";
         SEED: "seed", "", SEEDS, "Its own seed; missing: the scene's", whole(), changes(Anew);
     }
     /// Brownian relief.

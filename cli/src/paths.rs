@@ -50,13 +50,12 @@ const WRITTEN: [(&str, Option<&str>); 8] = [
 ];
 
 /// Verbs whose `--output` is one file of a kind that its name must say.
-const OUTPUTS: [(&str, &str); 6] = [
+const OUTPUTS: [(&str, &str); 5] = [
     ("fit", "json"),
     ("modes", "json"),
     ("metamer", "png"),
     ("from-normals", "png"),
     ("brownian", "png"),
-    ("solid", "png"),
 ];
 
 /// Hands over what the command line reads and checks what it writes.
@@ -95,7 +94,11 @@ fn values(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
     paths.chain(texts).collect()
 }
 
-fn ends_in(path: &Path, ending: &str) -> Result<(), CliError> {
+/// Refuses a path that ends as another kind of file does.
+///
+/// # Errors
+/// When it does.
+pub fn ends_in(path: &Path, ending: &str) -> Result<(), CliError> {
     if path.extension().is_some_and(|is| is.eq_ignore_ascii_case(ending)) {
         return Ok(());
     }

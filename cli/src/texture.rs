@@ -10,6 +10,7 @@ pub mod from_photo;
 pub mod metamer;
 pub mod object;
 pub mod rank;
+pub mod shader;
 pub mod solid;
 pub mod solid_of;
 

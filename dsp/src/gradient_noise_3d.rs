@@ -103,6 +103,12 @@ impl GradientNoise3d {
         Self { level, ..self }
     }
 
+    /// The 32 bits that enter the hash of every lattice point.
+    #[must_use]
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
     /// Instructions that evaluate batches.
     #[must_use]
     pub fn level(&self) -> Level {

@@ -11,6 +11,7 @@ use asperity_surface::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]
 use asperity_surface::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface};
 use asperity_surface::combine::{Crossfade, Mask, Scale, Sum};
+use asperity_surface::grating::Grating;
 use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_surface::height_map::{Extent, HeightMap};
 use asperity_surface::lattice::Lattice;
@@ -47,6 +48,9 @@ impl Ground<'_> {
                 Box::new(self.map(image, *invert, extent)?)
             }
             Source::Solid { parameters, seed } => Box::new(self.solid(parameters, *seed)?),
+            Source::Grating(parameters) => Box::new(
+                Grating::new(*parameters).map_err(|error| FileError::from_error(error).within("solid"))?,
+            ),
             Source::Brownian(brownian) => self.brownian(brownian)?,
             Source::Lattice(entry) => Box::new(self.lattice(entry)?),
             Source::Sand(sand) => Box::new(self.sand(sand)?),

@@ -15,6 +15,7 @@ pub mod fade;
 pub mod footprint;
 pub mod force_output;
 pub mod force_rendering;
+pub mod grating;
 pub mod height_field;
 pub mod height_map;
 pub mod lattice;

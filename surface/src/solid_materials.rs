@@ -9,6 +9,7 @@
 //! | sand | 2 | 2 | 10 | 0.5 | 1 mm | 50 µm | |
 //! | gravel | 6 | 2 | 5 | 0.5 | 2 mm | 50 µm | |
 //! | pebbles | 8 | 2 | 1 | 0.5 | 10 mm | 100 µm | viscous medium, b = 5 N·s/m |
+//! | ridged, billow, turbulence, Voronoi | 2 | 3 (Voronoi 1) | 5 | 0.5 | 2 mm | 50 µm | all: the paper names the modules only |
 //!
 //! M, N, f, per: the paper's Table 1. Its unit of length is not given; ours is 10 mm (T = 100 m⁻¹),
 //! which makes sandpaper's cell 0.2 mm and pebbles' 10 mm. The lacunarity is not given either; ours
@@ -21,7 +22,7 @@
 //! "in a viscous cube" whose viscosity is not printed; in Table 1 they differ from granite by the
 //! magnitude alone.
 
-use crate::solid_noise::{ForceDirection, NoiseModule, SolidNoiseParameters};
+use crate::solid_noise::{ForceDirection, NoiseKind, NoiseModule, SolidNoiseParameters};
 
 /// 1 / (10 mm): the length unit of Table 1 (ours; the paper does not give it).
 pub const TEXTURE_FACTOR_PER_M: f64 = 100.0;
@@ -52,6 +53,10 @@ pub enum SolidMaterial {
     Pebbles,
     /// Wood exactly as the paper's table has it: grain without rings.
     WoodAsPrinted,
+    Ridged,
+    Billow,
+    Turbulence,
+    Voronoi,
 }
 
 impl SolidMaterial {
@@ -66,6 +71,14 @@ impl SolidMaterial {
         Self::Pebbles,
     ];
 
+    /// Noises of other kinds.
+    pub const KINDS: [Self; 4] = [Self::Ridged, Self::Billow, Self::Turbulence, Self::Voronoi];
+
+    /// Every one but the printed wood.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::SEVEN.into_iter().chain(Self::KINDS)
+    }
+
     /// Its name in scene files and on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -78,6 +91,10 @@ impl SolidMaterial {
             Self::Gravel => "gravel",
             Self::Pebbles => "pebbles",
             Self::WoodAsPrinted => "wood_as_printed",
+            Self::Ridged => "ridged",
+            Self::Billow => "billow",
+            Self::Turbulence => "turbulence",
+            Self::Voronoi => "voronoi",
         }
     }
 
@@ -85,13 +102,21 @@ impl SolidMaterial {
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let name = name.trim().to_ascii_lowercase().replace(['-', ' '], "_");
-        Self::SEVEN.into_iter().chain([Self::WoodAsPrinted]).find(|m| m.name() == name)
+        Self::all().chain([Self::WoodAsPrinted]).find(|m| m.name() == name)
     }
 
     /// Its parameters.
     #[must_use]
     pub fn parameters(self) -> SolidNoiseParameters {
+        let kind = match self {
+            Self::Ridged => NoiseKind::Ridged,
+            Self::Billow => NoiseKind::Billow,
+            Self::Turbulence => NoiseKind::Turbulence,
+            Self::Voronoi => NoiseKind::Voronoi,
+            _ => NoiseKind::Gradient,
+        };
         let module = |magnitude, octaves, frequency, persistence| NoiseModule {
+            kind,
             magnitude,
             octaves,
             frequency,
@@ -107,6 +132,8 @@ impl SolidMaterial {
             Self::Sand => (module(2.0, 2, 10.0, 0.5), NoiseModule::SILENT, 5e-5),
             Self::Gravel => (module(6.0, 2, 5.0, 0.5), NoiseModule::SILENT, 5e-5),
             Self::Pebbles => (module(8.0, 2, 1.0, 0.5), NoiseModule::SILENT, 1e-4),
+            Self::Voronoi => (module(2.0, 1, 5.0, 0.5), NoiseModule::SILENT, 5e-5),
+            _ => (module(2.0, 3, 5.0, 0.5), NoiseModule::SILENT, 5e-5),
         };
         SolidNoiseParameters {
             modules: [first, second],

@@ -1,7 +1,7 @@
 //! Solid noise: a surface cut out of a block of three-dimensional noise.
 //!
 //! ```text
-//! n_p(x) = Σ_modules M · Σ_{i=0}^{N−1} per^i · n_i(x · f · lac^i)
+//! n_p(x) = Σ_modules M · Σ_{i=0}^{N−1} per^i · n_i(x · f · lac^i)                 n: [`NoiseKind`]
 //! height:  h = A · n_p(T · x)                                            metres
 //! force:   F_tex = L · n_p(T · x), no more than the cap, in penetration;  F = F_contact + F_friction + F_tex − b v     [`force`]
 //! ```
@@ -25,9 +25,11 @@
 
 mod cut;
 mod force;
+mod kind;
 mod parameters;
 
 pub use cut::SolidCut;
+pub use kind::NoiseKind;
 pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParameters};
 
 use crate::fade::Fade;
@@ -119,6 +121,12 @@ impl SolidNoise {
         Ok(())
     }
 
+    /// The lattice of an octave of a module (0 or 1).
+    #[must_use]
+    pub fn lattice(&self, module: usize, octave: usize) -> &GradientNoise3d {
+        &self.lattices[module.min(1)][octave.min(MAX_OCTAVES - 1)]
+    }
+
     /// n_p(T x) at a point of the block, without gradient or footprint, in units of magnitude: the
     /// definition, for oracles and tools.
     #[must_use]
@@ -127,7 +135,7 @@ impl SolidNoise {
         for (module, lattices) in parameters.modules.iter().zip(&self.lattices) {
             for (index, lattice) in lattices.iter().enumerate().take(module.octaves) {
                 let (per_m, amplitude) = parameters.octave(module, index);
-                sum += amplitude * f64::from(lattice.at(point_m.map(|x| x * per_m)).value);
+                sum += amplitude * f64::from(module.kind.at(lattice, point_m.map(|x| x * per_m)).value);
             }
         }
         sum
@@ -158,8 +166,11 @@ impl SolidNoise {
             for (index, lattice) in lattices.iter().enumerate().take(module.octaves) {
                 let (per_m, amplitude) = parameters.octave(module, index);
                 if path.footprint_m.iter().any(|&p| resolved(p * per_m) != 0.0) {
-                    self.octave(lattice, per_m, path.len(), scratch);
-                    self.add_octave(parameters, path, [per_m, amplitude], weight, scratch, out);
+                    self.octave(module.kind, lattice, per_m, path.len(), scratch);
+                }
+                let mean = module.kind.mean();
+                if mean != 0.0 || path.footprint_m.iter().any(|&p| resolved(p * per_m) != 0.0) {
+                    self.add_octave(parameters, path, [per_m, amplitude, mean], weight, scratch, out);
                 }
             }
         }
@@ -193,7 +204,7 @@ impl SolidNoise {
         &self,
         parameters: &SolidNoiseParameters,
         path: &PathBlock<'_>,
-        [per_m, amplitude]: [f64; 2],
+        [per_m, amplitude, mean]: [f64; 3],
         weight: &[f64; MAX_BLOCK],
         scratch: &mut Scratch,
         out: &mut SurfaceBlock,
@@ -201,13 +212,15 @@ impl SolidNoise {
         let [du, dv] = [self.cut.u_axis, self.cut.v_axis];
         for i in 0..path.len().min(MAX_BLOCK) {
             let share = amplitude * resolved(path.footprint_m[i] * per_m);
-            scratch.texture[i] += share * f64::from(scratch.value[i]);
+            let left = (amplitude - share) * mean;
+            scratch.texture[i] += share * f64::from(scratch.value[i]) + left;
+            out.height_m[i] += weight[i] * parameters.amplitude_m * left;
             let height = weight[i] * parameters.amplitude_m * share;
             if height != 0.0 {
+                out.height_m[i] += height * f64::from(scratch.value[i]);
                 let slope = scratch.slope.each_ref().map(|s| f64::from(s[i]));
                 let along =
                     |axis: [f64; 3]| per_m * (slope[0] * axis[0] + slope[1] * axis[1] + slope[2] * axis[2]);
-                out.height_m[i] += height * f64::from(scratch.value[i]);
                 out.gradient[i][0] += height * along(du);
                 out.gradient[i][1] += height * along(dv);
             }
@@ -215,8 +228,23 @@ impl SolidNoise {
     }
 
     /// Evaluates one lattice at the points.
-    fn octave(&self, lattice: &GradientNoise3d, per_m: f64, n: usize, scratch: &mut Scratch) {
+    fn octave(
+        &self,
+        kind: NoiseKind,
+        lattice: &GradientNoise3d,
+        per_m: f64,
+        n: usize,
+        scratch: &mut Scratch,
+    ) {
         let n = n.min(MAX_BLOCK);
+        if kind == NoiseKind::Voronoi {
+            for i in 0..n {
+                let noise = kind.at(lattice, scratch.point_m[i].map(|p| p * per_m));
+                scratch.value[i] = noise.value;
+                scratch.slope.iter_mut().zip(noise.gradient).for_each(|(slope, part)| slope[i] = part);
+            }
+            return;
+        }
         let [x, y, z] = &mut scratch.cells;
         for (i, point_m) in scratch.point_m.iter().enumerate().take(n) {
             [x[i], y[i], z[i]] = point_m.map(|p| p * per_m);
@@ -229,6 +257,13 @@ impl SolidNoise {
             dz: &mut dz[..n],
         };
         lattice.batch(&x[..n], &y[..n], &z[..n], &mut batch);
+        if kind != NoiseKind::Gradient {
+            for i in 0..n {
+                let (value, slope) = kind.curve(scratch.value[i]);
+                scratch.value[i] = value;
+                scratch.slope.iter_mut().for_each(|part| part[i] *= slope);
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod brownian;
 mod combine;
 mod common;
 mod debanding;
+mod grating;
 mod height_map_figures;
 mod hollows;
 mod lattice;

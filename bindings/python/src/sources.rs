@@ -97,7 +97,7 @@ pub fn parse_log(text: &str, name: &str) -> PyResult<Vec<String>> {
 pub fn names_of(kind: &str) -> PyResult<Vec<&'static str>> {
     Ok(match kind {
         "material" => Material::PRESETS.iter().map(|preset| preset.name).collect(),
-        "solid" => SolidMaterial::SEVEN.map(SolidMaterial::name).to_vec(),
+        "solid" => SolidMaterial::all().map(SolidMaterial::name).chain(["grating"]).collect(),
         "stock" => Stock::ALL.iter().map(|(name, _)| *name).collect(),
         "probe" => PROBE_PRESETS.iter().map(|(name, _)| *name).collect(),
         "kernel" => Isa::ALL.map(Isa::name).to_vec(),

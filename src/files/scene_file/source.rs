@@ -9,6 +9,7 @@ use super::sand::{self, Sand};
 use crate::files::FileError;
 use crate::parameters::{self, solid};
 use asperity_surface::force_rendering::Rendering;
+use asperity_surface::grating::{GratingKind, GratingParameters};
 use asperity_surface::picture::Channel;
 use asperity_surface::solid_materials::SolidMaterial;
 use asperity_surface::solid_noise::{ForceDirection, SolidNoiseParameters};
@@ -36,6 +37,8 @@ pub enum Source {
         /// Seed; none = the scene's.
         seed: Option<u64>,
     },
+    /// Waves, ridges or dots.
+    Grating(GratingParameters),
     /// An exact fractional Brownian relief.
     Brownian(Brownian),
     /// A primitive cell repeated along two translations.
@@ -185,6 +188,7 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
     let right = "write the name of a material, or { preset = \"NAME\", … }";
     match fields.take("solid") {
         Some(Value::Table(table)) => read_solid_table(Fields::new(table, fields.inner("solid"))),
+        Some(Value::String(preset)) if is_grating(&preset) => Ok(Source::Grating(GratingParameters::default())),
         Some(Value::String(preset)) if !preset.is_empty() => {
             let parameters = Box::new(solid_preset(fields, "solid", &preset)?);
             Ok(Source::Solid { parameters, seed: None })
@@ -196,16 +200,38 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
 
 fn solid_preset(fields: &Fields, key: &str, name: &str) -> Result<SolidNoiseParameters, FileError> {
     let material = SolidMaterial::from_name(name).ok_or_else(|| {
-        let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ").replace('_', "-");
+        let known = SolidMaterial::all().map(SolidMaterial::name);
+        let known = known.chain(["grating"]).collect::<Vec<_>>().join(", ").replace('_', "-");
         fields.refuse(key, format!("\"{name}\" is unknown"), format!("must be one of: {known}"))
     })?;
     Ok(material.parameters())
+}
+
+fn is_grating(name: &str) -> bool {
+    name.trim().eq_ignore_ascii_case("grating")
+}
+
+fn read_grating(mut table: Fields) -> Result<Source, FileError> {
+    let kinds =
+        [("sine", GratingKind::Sine), ("ridges", GratingKind::Ridges), ("dots", GratingKind::Dots)];
+    let usual = GratingParameters::default();
+    let grating = GratingParameters {
+        kind: table.word("kind", &kinds)?.unwrap_or(usual.kind),
+        pitch_m: table.number_or(&solid::PITCH_M, usual.pitch_m)?,
+        amplitude_m: table.number_or(&solid::AMPLITUDE_M, usual.amplitude_m)?,
+        duty: table.number_or(&solid::DUTY, usual.duty)?,
+    };
+    table.finish()?;
+    Ok(Source::Grating(grating))
 }
 
 fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
     let directions =
         [("x", ForceDirection::X), ("normal", ForceDirection::Normal), ("tangent", ForceDirection::Tangent)];
     let preset = table.needed_text("preset")?;
+    if is_grating(&preset) {
+        return read_grating(table);
+    }
     let mut parameters = solid_preset(&table, "preset", &preset)?;
     let seed = table.seed(&solid::SEED)?;
     let [first, _] = &mut parameters.modules;

@@ -53,8 +53,11 @@ impl SolidNoise {
             for (index, lattice) in lattices.iter().enumerate().take(module.octaves) {
                 let (per_m, amplitude) = parameters.octave(module, index);
                 let whole = super::resolved(footprint_m * per_m);
+                let mean = module.kind.mean();
+                texture += amplitude * (1.0 - whole) * mean;
                 if amplitude * whole != 0.0 {
-                    texture += amplitude * whole * f64::from(lattice.at(point.map(|x| x * per_m)).value);
+                    let noise = module.kind.at(lattice, point.map(|x| x * per_m));
+                    texture += amplitude * whole * f64::from(noise.value);
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Parameters of a solid-noise surface, with their ranges.
 
+use super::kind::NoiseKind;
 use crate::height_field::WavelengthBand;
 use asperity_dsp::{DesignError, limits};
 
@@ -9,6 +10,8 @@ pub const MAX_OCTAVES: usize = 16;
 /// One noise function of the document (wood needs two).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModule {
+    /// Kind of noise.
+    pub kind: NoiseKind,
     /// Magnitude M, at or above 0; 0 = no such module.
     pub magnitude: f64,
     /// Octaves N, 1 to [`MAX_OCTAVES`].
@@ -23,8 +26,14 @@ pub struct NoiseModule {
 
 impl NoiseModule {
     /// No noise.
-    pub const SILENT: Self =
-        Self { magnitude: 0.0, octaves: 1, frequency: 1.0, lacunarity: 2.0, persistence: 0.5 };
+    pub const SILENT: Self = Self {
+        kind: NoiseKind::Gradient,
+        magnitude: 0.0,
+        octaves: 1,
+        frequency: 1.0,
+        lacunarity: 2.0,
+        persistence: 0.5,
+    };
 
     fn check(&self) -> Result<(), DesignError> {
         limits::solid::MAGNITUDE.check("magnitude", self.magnitude)?;
@@ -96,7 +105,8 @@ impl SolidNoiseParameters {
     }
 
     /// Cells per metre and amplitude (in units of magnitude) of one octave.
-    pub(super) fn octave(&self, module: &NoiseModule, index: usize) -> (f64, f64) {
+    #[must_use]
+    pub fn octave(&self, module: &NoiseModule, index: usize) -> (f64, f64) {
         let (mut frequency, mut amplitude) = (self.texture_factor_per_m * module.frequency, module.magnitude);
         for _ in 0..index {
             frequency *= module.lacunarity;
@@ -108,7 +118,7 @@ impl SolidNoiseParameters {
     /// Largest distance of its heights from zero, metres.
     pub(super) fn reach_m(&self) -> f64 {
         let octaves = |module: &NoiseModule| -> f64 {
-            (0..module.octaves).map(|index| self.octave(module, index).1.abs()).sum()
+            (0..module.octaves).map(|index| module.kind.reach() * self.octave(module, index).1.abs()).sum()
         };
         self.amplitude_m.abs() * self.modules.iter().map(octaves).sum::<f64>()
     }
