@@ -13,6 +13,7 @@ mod hostile;
 mod house;
 mod import;
 mod inputs_are_kept;
+mod likeness_and_shaders;
 mod limits;
 mod losses;
 #[path = "support/maps.rs"]

@@ -189,13 +189,17 @@ fn a_height_map_is_a_thing_to_hold_of_the_size_told_in_either_format() {
     let rough = |x: usize, y: usize| 0.2 + 0.6 * (((x * 37 + y * 91) % 53) as f64 / 52.0);
     let scene = with_maps(&[("rough.png", Raster::from_fn(24, 16, rough))]);
     let sizes = ["--relief-mm", "1.5", "--width-mm", "30", "--base-mm", "3"];
-    let make = |output: &str| report(&scene, &[&["solid-of", "rough.png", "-o", output], &sizes[..]].concat());
+    let make =
+        |output: &str| report(&scene, &[&["solid-of", "rough.png", "-o", output], &sizes[..]].concat());
     let made = make("rough.stl");
     let (volume, size, closed) = solid(&std::fs::read(scene.path("rough.stl")).unwrap());
     let heights = grey(&scene, "rough.png");
     let (low, high) = heights.range();
     let exact = [30.0, 20.0, 3.0 + 1.5 * (high - low)];
-    assert!(closed && size.iter().zip(exact).all(|(size, told)| (size / told - 1.0).abs() < 1e-6), "{size:?}");
+    assert!(
+        closed && size.iter().zip(exact).all(|(size, told)| (size / told - 1.0).abs() < 1e-6),
+        "{size:?}"
+    );
     let exact = 600.0 * (3.0 + 1.5 * (heights.mean() - low));
     assert!((volume / exact - 1.0).abs() < 1e-5 && (number(&made, "volume_mm3") / exact - 1.0).abs() < 1e-12);
     // The mesh solver reads the other format, and finds it as large; a thing of plastic weighs that.
@@ -206,7 +210,10 @@ fn a_height_map_is_a_thing_to_hold_of_the_size_told_in_either_format() {
     assert!((number(&solved, "volume_m3") * 1e9 / exact - 1.0).abs() < 0.05, "{solved}");
     let refused = |output: &str, base: &str| {
         let arguments = ["texture", "solid-of", "rough.png", "-o", output, "--base-mm", base];
-        assert_refused(&asperity(scene.folder.path(), &arguments), &[if base == "3" { ".glb" } else { "base_m" }]);
+        assert_refused(
+            &asperity(scene.folder.path(), &arguments),
+            &[if base == "3" { ".glb" } else { "base_m" }],
+        );
         assert!(!scene.path(output).exists());
     };
     refused("rough.obj", "3");

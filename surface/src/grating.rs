@@ -169,8 +169,7 @@ impl HeightField for Grating {
             GratingKind::Ridges => 2.0 * target.flank(),
             GratingKind::Dots => target.duty,
         };
-        let band =
-            WavelengthBand { shortest_m: shortest * target.pitch_m, longest_m: target.pitch_m };
+        let band = WavelengthBand { shortest_m: shortest * target.pitch_m, longest_m: target.pitch_m };
         Properties {
             reach_m: target.amplitude_m.abs(),
             extension: if repeats { Extension::Same } else { Extension::Fresh },

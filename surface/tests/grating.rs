@@ -100,8 +100,10 @@ fn what_stands_still_on_a_grating_or_a_new_noise_feels_nothing() {
         let heights = stroke.heights(source, &[64]);
         assert!(heights.iter().all(|height| height.to_bits() == heights[0].to_bits()));
     };
-    KINDS.into_iter().for_each(|kind| is_constant(&mut Grating::new(of(kind, 0.5)).unwrap())));
-    SolidMaterial::KINDS.into_iter().for_each(|material| is_constant(&mut SolidNoise::new(material.parameters(), 3).unwrap())));
+    KINDS.into_iter().for_each(|kind| is_constant(&mut Grating::new(of(kind, 0.5)).unwrap()));
+    SolidMaterial::KINDS
+        .into_iter()
+        .for_each(|material| is_constant(&mut SolidNoise::new(material.parameters(), 3).unwrap()));
 }
 
 #[test]

@@ -71,7 +71,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     for (file, result) in names.into_iter().zip(results) {
         match result {
             Ok(distance) => ranking.push(Ranked { file, distance }),
-            Err(error) => warnings.push(format!("left out: {}", error.to_string().replacen("error: ", "", 1))),
+            Err(error) => {
+                warnings.push(format!("left out: {}", error.to_string().replacen("error: ", "", 1)))
+            }
         }
     }
     if ranking.is_empty() {
@@ -91,7 +93,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         1e3 * width_m,
         1e3 * relief_m
     ));
-    report.ranking.iter().for_each(|Ranked { file, distance }| output::say(&format!("{distance:8.2}  {file}")));
+    report
+        .ranking
+        .iter()
+        .for_each(|Ranked { file, distance }| output::say(&format!("{distance:8.2}  {file}")));
     report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
     Ok(())
 }
@@ -102,10 +107,13 @@ fn pictures(folder: &Path) -> Result<Vec<String>, CliError> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
-        let is_picture = path.extension().and_then(|ending| ending.to_str()).is_some_and(|ending| {
-            ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
-        });
-        if let (true, Some(name)) = (is_picture && path.is_file(), path.file_name().and_then(|name| name.to_str())) {
+        let is_picture = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)));
+        if let (true, Some(name)) =
+            (is_picture && path.is_file(), path.file_name().and_then(|name| name.to_str()))
+        {
             names.push(name.to_owned());
         }
     }

@@ -76,7 +76,12 @@ $fn float #_noise(vec3 p, uint seed) {
 
 /// Heights of a solid: in its block's frame, in that of a body made of it, and as the picture of
 /// `texture solid` cuts it.
-pub fn of_solid(name: &str, noise: &SolidNoise, parameters: &SolidNoiseParameters, language: Language) -> String {
+pub fn of_solid(
+    name: &str,
+    noise: &SolidNoise,
+    parameters: &SolidNoiseParameters,
+    language: Language,
+) -> String {
     let mut text = String::new();
     let kind = parameters.modules[0].kind;
     text.push_str(if kind == NoiseKind::Voronoi { CELLS } else { CORNER });

@@ -137,7 +137,9 @@ impl<'a> Block<'a> {
             let [a, b, c, d] = around.map(unit);
             if self.is_corner(column, row) {
                 let middle = unit([0, 1, 2].map(|axis| around.iter().map(|p| p[axis]).sum::<f64>() / 4.0));
-                [[a, b], [b, c], [c, d], [d, a]].into_iter().try_for_each(|[from, to]| emit([from, to, middle]))?;
+                [[a, b], [b, c], [c, d], [d, a]]
+                    .into_iter()
+                    .try_for_each(|[from, to]| emit([from, to, middle]))?;
             } else {
                 emit([a, b, c])?;
                 emit([a, c, d])?;

@@ -37,7 +37,7 @@ impl SurfaceEntry {
 impl Source {
     fn name_files<'a>(&'a self, all: &mut Vec<&'a Path>) {
         match self {
-            Self::Flat | Self::Solid { .. } | Self::Brownian(_) | Self::Own(_) => {}
+            Self::Flat | Self::Solid { .. } | Self::Grating(_) | Self::Brownian(_) | Self::Own(_) => {}
             Self::Map { image, .. } => all.push(&image.path),
             Self::Lattice(lattice) => all.push(&lattice.cell.path),
             Self::Sand(sand) => all.extend(sand.tool.iter().map(|tool| tool.image.path.as_path())),

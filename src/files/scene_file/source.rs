@@ -188,7 +188,9 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
     let right = "write the name of a material, or { preset = \"NAME\", … }";
     match fields.take("solid") {
         Some(Value::Table(table)) => read_solid_table(Fields::new(table, fields.inner("solid"))),
-        Some(Value::String(preset)) if is_grating(&preset) => Ok(Source::Grating(GratingParameters::default())),
+        Some(Value::String(preset)) if is_grating(&preset) => {
+            Ok(Source::Grating(GratingParameters::default()))
+        }
         Some(Value::String(preset)) if !preset.is_empty() => {
             let parameters = Box::new(solid_preset(fields, "solid", &preset)?);
             Ok(Source::Solid { parameters, seed: None })
@@ -212,8 +214,7 @@ fn is_grating(name: &str) -> bool {
 }
 
 fn read_grating(mut table: Fields) -> Result<Source, FileError> {
-    let kinds =
-        [("sine", GratingKind::Sine), ("ridges", GratingKind::Ridges), ("dots", GratingKind::Dots)];
+    let kinds = [("sine", GratingKind::Sine), ("ridges", GratingKind::Ridges), ("dots", GratingKind::Dots)];
     let usual = GratingParameters::default();
     let grating = GratingParameters {
         kind: table.word("kind", &kinds)?.unwrap_or(usual.kind),

@@ -170,7 +170,8 @@ mod tests {
             let cell = place.map(|x: f64| x.floor() as i32);
             let mut least = f64::INFINITY;
             for n in 0..343 {
-                let at: [i32; 3] = core::array::from_fn(|axis| cell[axis] + n / 7_i32.pow(axis as u32) % 7 - 3);
+                let at: [i32; 3] =
+                    core::array::from_fn(|axis| cell[axis] + n / 7_i32.pow(axis as u32) % 7 - 3);
                 let point = point(lattice.seed(), at);
                 let away = (0..3).map(|a| (place[a] - f64::from(at[a]) - f64::from(point[a])).powi(2));
                 least = least.min(away.sum::<f64>().sqrt());

@@ -1,0 +1,172 @@
+//! The texture verbs that compare as fingers do, and those that draw a solid elsewhere.
+
+use crate::maps;
+use crate::support;
+use crate::surfaces;
+
+use asperity_surface::raster::Raster;
+use maps::with_maps;
+use serde_json::Value;
+use support::{Scene, asperity, assert_refused, told};
+use surfaces::{fractal, ground, ridges};
+
+fn report(scene: &Scene, arguments: &[&str]) -> Value {
+    let all = [&["texture"], arguments, &["--json"]].concat();
+    let (status, out, err) = told(&asperity(scene.folder.path(), &all));
+    assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
+    serde_json::from_str(&out).unwrap()
+}
+
+/// A folder of two cuts each of three materials, and what is no map.
+fn collection() -> Scene {
+    let cut = |of: &Raster, x: usize| Raster::from_fn(128, 128, |i, j| of.at(i + x, j));
+    let (rough, soil) = (fractal(256, 2.6, 1.0, 9), ground(256));
+    let scene = Scene::new();
+    std::fs::create_dir(scene.path("maps")).unwrap();
+    for (name, of) in [("fractal", &rough), ("ground", &soil)] {
+        for (n, x) in [(1, 0), (2, 128)] {
+            let map = asperity_surface::image_io::save_gray16(
+                scene.path(&format!("maps/{name}-{n}.png")),
+                &cut(of, x),
+            );
+            map.unwrap();
+        }
+    }
+    let path = scene.path("maps/ridges-1.png");
+    asperity_surface::image_io::save_gray16(path, &ridges(128)).unwrap();
+    scene.write("maps/remarks.txt", "no map");
+    scene.write("maps/broken.png", "no picture either");
+    scene
+}
+
+#[test]
+fn a_collection_is_ordered_by_likeness_of_feel() {
+    let scene = collection();
+    for material in ["fractal", "ground"] {
+        let original = format!("maps/{material}-1.png");
+        let told = report(&scene, &["rank", &original, "maps", "--strokes", "20"]);
+        let ranking = told["ranking"].as_array().unwrap();
+        let names: Vec<&str> = ranking.iter().map(|entry| entry["file"].as_str().unwrap()).collect();
+        assert_eq!(names.len(), 5, "{told}");
+        assert_eq!(names[0], format!("{material}-1.png"));
+        assert_eq!(names[1], format!("{material}-2.png"), "{told}");
+        let distances: Vec<f64> = ranking.iter().map(|entry| entry["distance"].as_f64().unwrap()).collect();
+        assert!(distances[0] == 0.0 && distances.is_sorted() && distances[2] > 2.0, "{distances:?}");
+        assert!(told["warnings"][0].as_str().unwrap().contains("broken.png"), "{told}");
+    }
+    std::fs::create_dir(scene.path("empty")).unwrap();
+    for folder in ["empty", "nowhere"] {
+        let told = asperity(scene.folder.path(), &["texture", "rank", "maps/ground-1.png", folder]);
+        assert_refused(&told, &[folder, "folder of height maps"]);
+    }
+}
+
+#[test]
+fn the_observer_tells_materials_apart_and_not_what_lies_below_people_s_thresholds() {
+    let scene = with_maps(&[("a.png", fractal(128, 2.6, 1.0, 9)), ("b.png", ground(128))]);
+    let compare = |relief: &str, observer: &[&str]| {
+        let all =
+            [&["compare", "a.png", "b.png", "--strokes", "60", "--relief-m", relief], observer].concat();
+        report(&scene, &all)
+    };
+    let told = compare("0.002", &["--observer"]);
+    assert_eq!(told["judge"], "observer");
+    assert!(told["originals"]["reference"].as_f64().unwrap() > 0.75, "{told}");
+    // A tenth of a micrometre: a machine's business.
+    let told = [compare("1e-7", &[]), compare("1e-7", &["--observer"])];
+    let [machine, observer] = told.each_ref().map(|told| told["originals"]["reference"].as_f64().unwrap());
+    assert_eq!(told[0]["judge"], "machine");
+    assert!(machine > 0.9 && (observer - 0.5).abs() < 0.13, "{machine} {observer}");
+}
+
+#[test]
+fn every_solid_is_a_shader_that_is_valid_and_needs_no_uniforms() {
+    let scene = Scene::new();
+    let solids = [
+        "sandpaper",
+        "granite",
+        "rough-glass",
+        "wood",
+        "sand",
+        "gravel",
+        "pebbles",
+        "ridged",
+        "billow",
+        "turbulence",
+        "voronoi",
+        "grating",
+    ];
+    for name in solids {
+        for kind in if name == "grating" { &["sine", "ridges", "dots"][..] } else { &[""] } {
+            let mut arguments = vec!["solid", name, "--shader", "wgsl"];
+            if !kind.is_empty() {
+                arguments.extend(["--kind", kind]);
+            }
+            let told = report(&scene, &arguments);
+            let (name, text) = (told["name"].as_str().unwrap(), told["shader"].as_str().unwrap());
+            let module = naga::front::wgsl::parse_str(text)
+                .unwrap_or_else(|error| panic!("{name}: {}\n{text}", error.emit_to_string(text)));
+            use naga::valid::{Capabilities, ValidationFlags, Validator};
+            Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+            assert!(module.global_variables.is_empty());
+            for function in ["height", "picture"] {
+                let wanted = format!("{name}_{function}");
+                assert!(module.functions.iter().any(|(_, f)| f.name.as_deref() == Some(&wanted)), "{text}");
+            }
+        }
+    }
+    let plain = asperity(scene.folder.path(), &["texture", "solid", "gravel", "--shader", "glsl"]);
+    let (status, text, _) = told(&plain);
+    assert!(
+        status == 0 && text.contains("float gravel_height(vec3 at_m) {") && !text.contains('$'),
+        "{text}"
+    );
+    for (arguments, words) in [
+        (&["solid", "gravel"][..], &["--output"][..]),
+        (&["solid", "gravel", "-o", "a.txt"], &["a.txt", ".png"]),
+        (&["solid", "gravel", "--shader", "wgsl", "-o", "a.glsl"], &["a.glsl", ".wgsl"]),
+        (&["solid", "gravle", "-o", "a.png"], &["gravle", "voronoi, grating"]),
+        (
+            &["solid", "gravel", "--duty", "0.5", "-o", "a.png"],
+            &["gravel is no grating", "texture solid grating"],
+        ),
+        (&["solid", "grating", "--duty", "1.5", "-o", "a.png"], &["duty", "0.95"]),
+    ] {
+        let told = asperity(scene.folder.path(), &[&["texture"], arguments].concat());
+        let text = String::from_utf8_lossy(&told.stderr).into_owned();
+        assert!(!told.status.success() && text.lines().count() == 1, "{text}");
+        assert!(words.iter().all(|word| text.contains(word)), "{arguments:?}: {text}");
+        assert!(!scene.path(arguments[arguments.len() - 1]).exists());
+    }
+}
+
+#[test]
+fn a_grating_of_a_scene_is_felt_at_its_pitch_and_its_words_are_checked() {
+    let scene = Scene::new();
+    let with = |solid: &str| {
+        let toml = support::TOML
+            .replace("roughness = 0.7", &format!("roughness = 0.0\nmicro_relief_m = 0.0\nsolid = {solid}"));
+        scene.write("scene.toml", toml);
+        scene.write("stroke.jsonl", support::stroke(1, 0.6));
+    };
+    for (kind, amplitude) in [("sine", "4e-5"), ("ridges", "2e-5"), ("dots", "3e-5")] {
+        with(&format!(
+            "{{ preset = \"grating\", kind = \"{kind}\", pitch_m = 0.002, amplitude_m = {amplitude}, duty = 0.4 }}"
+        ));
+        scene.report(&["--trace"]);
+        let trace = std::fs::read_to_string(scene.path("out.trace.csv")).unwrap();
+        let rows = trace.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let heights: Vec<f64> = rows.map(|row| row[4].parse().unwrap()).collect();
+        let peak = heights.iter().fold(0.0_f64, |peak, height| peak.max(height.abs()));
+        assert!((peak / amplitude.parse::<f64>().unwrap() - 1.0).abs() < 0.02, "{kind}: {peak}");
+    }
+    for (solid, words) in [
+        ("{ preset = \"grating\", kind = \"saw\" }", &["kind", "ridges"][..]),
+        ("{ preset = \"grating\", duty = 0.0 }", &["duty", "0.05 to 0.95"]),
+        ("{ preset = \"grating\", octaves = 2 }", &["octaves"]),
+        ("\"gratin\"", &["gratin", "voronoi, grating"]),
+    ] {
+        with(solid);
+        assert_refused(&asperity(scene.folder.path(), &["render", "scene.toml", "-o", "out"]), words);
+    }
+}
