@@ -26,6 +26,7 @@ mod bench_scene;
 mod csv;
 mod demo;
 mod error;
+mod evidence;
 mod export;
 mod fit;
 mod haptic;
@@ -44,6 +45,7 @@ mod sounds;
 mod strike;
 mod stroke;
 mod texture;
+mod unwrap;
 mod wav;
 mod web;
 
@@ -78,6 +80,7 @@ enum Verb {
     Texture(texture::Verb),
     Headroom(headroom::Options),
     Report(report::Options),
+    Evidence(evidence::Options),
     Web(web::Options),
     Batch(batch::Options),
 }
@@ -97,6 +100,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Texture(verb) => texture::run(verb),
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),
+        Verb::Evidence(options) => evidence::run(&options),
         Verb::Web(options) => web::run(&options),
         Verb::Batch(options) => batch::run(&options),
     }

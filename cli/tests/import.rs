@@ -232,3 +232,63 @@ fn a_document_without_the_draft_gives_a_body_and_a_surface_in_true_metres() {
         assert_eq!(surface["body"].as_str(), scene["body"][0]["name"].as_str());
     }
 }
+
+/// A document of one sheet without texture coordinates, `open` or closed to a box.
+fn sheet(open: bool) -> (Value, Vec<u8>) {
+    let (mut document, bytes) = textured_box(&json!({"children": [1]}), &json!({}));
+    document["materials"] = json!([{"name": "clay"}]);
+    let mesh = &mut document["meshes"][0]["primitives"][0];
+    mesh["attributes"] = json!({"POSITION": 0});
+    if open {
+        // Front, top and back: a channel that can be laid flat.
+        document["accessors"][2]["count"] = json!(18);
+        document["accessors"][2]["byteOffset"] = json!(12);
+    }
+    (document, bytes[..232].to_vec())
+}
+
+#[test]
+fn a_mesh_without_coordinates_is_unwrapped_in_metres_or_told_why_not() {
+    for (method, open) in [("energy", true), ("smooth", true), ("energy", false)] {
+        let folder = tempfile::tempdir().unwrap();
+        let (document, bytes) = sheet(open);
+        put(folder.path(), &document, &bytes);
+        let arguments = ["import", "scene.gltf", "-o", "out", "--unwrap", method, "--json"];
+        let (status, out, err) = told(&asperity(folder.path(), &arguments));
+        assert_eq!((status, err.as_str()), (0, ""), "{out}");
+        let report: Value = serde_json::from_str(&out).unwrap();
+        let file = folder.path().join("out/brick-0.glb");
+        if !open {
+            assert!(report["unwrap"].is_null() && !file.exists(), "{report}");
+            assert!(
+                report["warnings"].to_string().contains("not unwrapped: the surface is closed"),
+                "{report}"
+            );
+            continue;
+        }
+        let unwrap = &report["unwrap"];
+        assert_eq!(unwrap["method"], method);
+        assert_eq!(unwrap["phi"].as_f64(), (method == "energy").then_some(0.2));
+        assert_eq!(
+            (unwrap["flipped"].as_u64(), unwrap["area_distortion"]["mean"].as_f64()),
+            (Some(0), Some(1.0))
+        );
+        let glb = fs::read(file).unwrap();
+        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        let made: Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+        let attributes = &made["meshes"][0]["primitives"][0]["attributes"];
+        let accessor = |key: &str| &made["accessors"][attributes[key].as_u64().unwrap() as usize];
+        assert_eq!(accessor("TEXCOORD_0")["type"], "VEC2");
+        assert_eq!(accessor("TEXCOORD_0")["count"], accessor("POSITION")["count"]);
+        let view = &made["bufferViews"][accessor("TEXCOORD_0")["bufferView"].as_u64().unwrap() as usize];
+        let at = 28 + length + view["byteOffset"].as_u64().unwrap() as usize;
+        let bytes = &glb[at..at + view["byteLength"].as_u64().unwrap() as usize];
+        let uv: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
+        let widest = uv.iter().fold(0.0_f32, |widest, x| widest.max(*x));
+        assert!((0.03..0.2).contains(&widest), "metres of a box of 0.1 × 0.05 × 0.02: {widest}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let told =
+        asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--unwrap", "energy", "--phi", "2"]);
+    assert!(String::from_utf8_lossy(&told.stderr).contains("must be 0 to 1"));
+}

@@ -170,3 +170,24 @@ fn a_grating_of_a_scene_is_felt_at_its_pitch_and_its_words_are_checked() {
         assert_refused(&asperity(scene.folder.path(), &["render", "scene.toml", "-o", "out"]), words);
     }
 }
+
+#[test]
+fn a_table_of_the_sources_is_computed_again_and_put_beside_what_is_printed() {
+    let scene = Scene::new();
+    let (status, list, _) = told(&asperity(scene.folder.path(), &["evidence", "--list"]));
+    assert!(status == 0 && list.contains("004-table-6-1"), "{list}");
+    let ran = asperity(scene.folder.path(), &["evidence", "001-fig-4", "-o", "out", "--json"]);
+    let (status, out, err) = told(&ran);
+    assert_eq!((status, err.as_str()), (0, ""));
+    let printed: Value = serde_json::from_str(&out).unwrap();
+    let written: Value =
+        serde_json::from_slice(&std::fs::read(scene.path("out/evidence.json")).unwrap()).unwrap();
+    assert_eq!(printed, written);
+    assert_eq!(written["document"]["alpha"], serde_json::json!([1.0, 2.0]));
+    let alpha = written["ours"]["alpha"].as_array().unwrap();
+    assert!((alpha[1].as_f64().unwrap() - 2.0).abs() < 0.1 && written["sentence"].is_string(), "{alpha:?}");
+    assert_refused(
+        &asperity(scene.folder.path(), &["evidence", "001-fig-5", "-o", "out"]),
+        &["001-fig-5", "001-fig-4"],
+    );
+}

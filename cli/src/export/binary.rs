@@ -25,12 +25,13 @@ impl Binary {
     }
 
     /// Vectors; of places the least and the greatest are told, as the format wants of a mesh.
-    pub fn vectors(&mut self, values: &[[f32; 3]], places: bool) -> usize {
+    pub fn vectors<const N: usize>(&mut self, values: &[[f32; N]], places: bool) -> usize {
         let bytes = values.iter().flatten().flat_map(|x| x.to_le_bytes());
-        let mut accessor = json!({"componentType": FLOAT, "type": "VEC3", "count": values.len()});
+        let mut accessor = json!({"componentType": FLOAT, "type": format!("VEC{N}"), "count": values.len()});
         if places {
             let bound = |start: f32, of: fn(f32, f32) -> f32| {
-                [0, 1, 2].map(|axis| values.iter().fold(start, |bound, value| of(bound, value[axis])))
+                let all = |axis: usize| values.iter().fold(start, |bound, value| of(bound, value[axis]));
+                (0..N).map(all).collect::<Vec<f32>>()
             };
             accessor["min"] = json!(bound(f32::INFINITY, f32::min));
             accessor["max"] = json!(bound(f32::NEG_INFINITY, f32::max));

@@ -8,9 +8,11 @@ mod plain;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
+use crate::unwrap::UnwrapOptions;
 use asperity_plot::pixels;
 use asperity_shape::ShapeError;
 use asperity_shape::gltf::{Document, Placed};
+use asperity_shape::unwrap::Unwrapped;
 use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -41,6 +43,9 @@ pub struct Options {
     /// Material of bodies where the document has none: a preset
     #[arg(long, value_name = "NAME", default_value = "ceramic")]
     pub material: String,
+    /// Texture coordinates: into NAME.glb, of meshes without the draft
+    #[command(flatten)]
+    pub unwrap: UnwrapOptions,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -50,8 +55,41 @@ pub struct Options {
 struct Report {
     bodies: usize,
     surfaces: usize,
+    #[serde(skip_serializing_if = "Unwraps::is_none")]
+    unwrap: Unwraps,
     warnings: Vec<String>,
     files: Vec<PathBuf>,
+}
+
+/// Meshes that were unwrapped: one as an object, several as a list.
+#[derive(Debug, Default, Serialize)]
+#[serde(untagged)]
+enum Unwraps {
+    #[default]
+    None,
+    One(Unwrap),
+    Several(Vec<Unwrap>),
+}
+
+impl Unwraps {
+    fn is_none(&self) -> bool {
+        matches!(self, Self::None)
+    }
+
+    fn of(mut all: Vec<Unwrap>) -> Self {
+        if all.len() > 1 {
+            return Self::Several(all);
+        }
+        all.pop().map_or(Self::None, Self::One)
+    }
+}
+
+/// One unwrapped mesh.
+#[derive(Debug, Serialize)]
+struct Unwrap {
+    file: String,
+    #[serde(flatten)]
+    unwrapped: Unwrapped,
 }
 
 /// Runs the verb.
@@ -72,6 +110,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let report = Report {
         bodies: scene.bodies.len(),
         surfaces: scene.surfaces.len(),
+        unwrap: Unwraps::of(std::mem::take(&mut scene.unwrapped)),
         warnings: std::mem::take(&mut scene.told),
         files: outputs.commit()?,
     };
@@ -94,6 +133,7 @@ struct Scene {
     bodies: Vec<(String, String)>,
     surfaces: Vec<(String, String)>,
     files: Vec<(String, Vec<u8>)>,
+    unwrapped: Vec<Unwrap>,
     told: Vec<String>,
 }
 
@@ -110,9 +150,9 @@ impl Scene {
             }
         }
         if !has_draft {
-            scene.plain(document, &maps, &options.material, &options.document)?;
+            scene.plain(document, &maps, options)?;
         }
-        if scene.bodies.is_empty() && scene.surfaces.is_empty() {
+        if scene.bodies.is_empty() && scene.surfaces.is_empty() && scene.unwrapped.is_empty() {
             let right = format!(
                 "must have a node with {EXTENSION}, or a closed mesh or a normal texture that a node places"
             );

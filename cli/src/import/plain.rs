@@ -1,6 +1,6 @@
 //! A document without the draft: a body of each mesh, and a surface of each normal texture.
 
-use super::{Scene, extent, plain};
+use super::{Options, Scene, Unwrap, extent, plain};
 use crate::error::CliError;
 use crate::modes;
 use asperity_shape::eigenmodes::Wanted;
@@ -11,7 +11,6 @@ use asperity_shape::{Elastic, Making, Mesh};
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// Most bodies that are solved: each takes seconds.
 const MOST_BODIES: usize = 16;
@@ -26,9 +25,9 @@ impl Scene {
         &mut self,
         document: &Document,
         maps: &[Option<Placed>],
-        material: &str,
-        path: &Path,
+        options: &Options,
     ) -> Result<(), CliError> {
+        let material = &options.material;
         let (mut bodies, mut tried): (HashMap<u64, Option<String>>, usize) = (HashMap::new(), 0);
         let mut textures = HashSet::new();
         for (node, map) in document.list("nodes").iter().zip(maps) {
@@ -49,7 +48,7 @@ impl Scene {
                 }
                 None => {
                     tried += 1;
-                    let solved = self.solved(document, mesh, map, &name, (material, path))?;
+                    let solved = self.solved(document, mesh, map, &name, options)?;
                     solved.then(|| name.clone())
                 }
             };
@@ -80,8 +79,9 @@ impl Scene {
         mesh: u64,
         map: &Placed,
         name: &str,
-        (material, path): (&str, &Path),
+        options: &Options,
     ) -> Result<bool, CliError> {
+        let (material, path) = (options.material.as_str(), options.document.as_path());
         let preset = modes::preset(material)?;
         let mut surface = SurfaceMesh::default();
         let primitives = &document.json["meshes"][mesh as usize]["primitives"];
@@ -97,6 +97,15 @@ impl Scene {
             let own = [map[0], map[1], map[2], [0.0; 3]];
             surface.points.extend(points.into_iter().map(|p| place(&own, p)));
             surface.triangles.extend(triangles.into_iter().map(|t| t.map(|i| i + first)));
+        }
+        match options.unwrap.glb(surface.clone()) {
+            Ok(None) => {}
+            Ok(Some((bytes, unwrapped))) => {
+                let file = format!("{name}.glb");
+                self.files.push((file.clone(), bytes));
+                self.unwrapped.push(Unwrap { file, unwrapped });
+            }
+            Err(error) => self.tell(format!("mesh {name} is not unwrapped: {}; {}", error.what, error.right)),
         }
         let elastic = Elastic {
             young_pa: preset.young_pa,

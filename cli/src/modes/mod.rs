@@ -6,8 +6,10 @@ mod picture;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
-use asperity_shape::Making;
 use asperity_shape::modes_file::ModesFile;
+use asperity_shape::surface_mesh::SurfaceMesh;
+use asperity_shape::unwrap::Unwrapped;
+use asperity_shape::{Making, Mesh};
 use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
@@ -33,6 +35,8 @@ pub struct Report {
     /// Duration, s.
     pub seconds: f64,
     peak_mib: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unwrap: Option<Unwrapped>,
     warnings: Vec<String>,
 }
 
@@ -76,6 +80,17 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
         wanted,
     };
     let name = options.body.display().to_string();
+    let beside_uv = options.output.with_extension("uv.glb");
+    let unwrapped = match &options.unwrap.unwrap {
+        Some(_) => {
+            check_destination(&beside_uv)?;
+            options
+                .unwrap
+                .glb(sheet(&mesh, options)?)
+                .map_err(|error| CliError::from_error(error.within(&name)))?
+        }
+        None => None,
+    };
     let mut body = asperity_shape::make(mesh, &making, progress).map_err(|error| {
         CliError::from_error(if error.at.starts_with("--") { error } else { error.within(&name) })
     })?;
@@ -97,6 +112,11 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
         text
     };
     outputs.write(&options.output, written.as_bytes())?;
+    let mut unwrap = None;
+    if let Some((bytes, report)) = unwrapped {
+        outputs.write(&beside_uv, &bytes)?;
+        unwrap = Some(report);
+    }
     if let Some(path) = &options.plot {
         let title = options.body.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         outputs.write(path, picture::svg(&title, &body, &damping, &file).as_bytes())?;
@@ -112,8 +132,27 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
         highest_hz: file.modes.last().map_or(0.0, |m| m.frequency_hz),
         seconds: started.elapsed().as_secs_f64(),
         peak_mib: peak_mib(),
+        unwrap,
         warnings: body.told,
     })
+}
+
+/// The surface that is unwrapped, as large as the body that is solved.
+fn sheet(mesh: &Mesh, options: &Options) -> Result<SurfaceMesh, CliError> {
+    let Mesh::Surface(surface) = mesh else {
+        let right = "leave --unwrap out, or give a surface mesh with one rim";
+        return Err(CliError::file(&options.body, "is cut into tetrahedra and has no rim", right));
+    };
+    let mut surface = surface.clone();
+    let longest_m = (0..3)
+        .map(|axis| {
+            let along = || surface.points.iter().map(|point| point[axis]);
+            along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+        })
+        .fold(0.0, f64::max);
+    let scale = options.size.map_or(options.unit.map_or(1.0, Unit::metres), |size_m| size_m / longest_m);
+    surface.points.iter_mut().flatten().for_each(|x| *x *= scale);
+    Ok(surface)
 }
 
 fn say(report: &Report, options: &Options) -> Result<(), CliError> {

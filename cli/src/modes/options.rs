@@ -1,6 +1,7 @@
 //! Options of `asperity modes`, and what they say about the body.
 
 use crate::error::CliError;
+use crate::unwrap::UnwrapOptions;
 use asperity::Material;
 use asperity_dsp::damping::Damping;
 use asperity_shape::Elastic;
@@ -61,6 +62,9 @@ pub struct Options {
     /// Write the shapes into a glTF document of their own, OUT.glb, that viewers of meshes open
     #[arg(long, conflicts_with = "shapes_beside")]
     pub shapes_glb: bool,
+    /// Texture coordinates: into OUT.uv.glb
+    #[command(flatten)]
+    pub unwrap: UnwrapOptions,
     /// Every mode below this frequency, Hz
     #[arg(long, value_name = "HZ")]
     pub up_to: Option<f64>,
@@ -119,6 +123,7 @@ impl Options {
             radiation: false,
             shapes_beside: false,
             shapes_glb: false,
+            unwrap: UnwrapOptions::default(),
             up_to: None,
             max_modes: None,
             plot: None,

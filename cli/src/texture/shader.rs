@@ -31,9 +31,9 @@ $fn float #_noise(vec3 p, uint seed) {
   $vec3 f = p - floor(p);
   $vec3 g = f - vec3(1.0, 1.0, 1.0);
   $vec3 w = f * f * f * (f * (f * 6.0 - vec3(15.0, 15.0, 15.0)) + vec3(10.0, 10.0, 10.0));
-  $uvec3 step = uvec3(0x9E3779B1u, 0x85EBCA77u, 0xC2B2AE3Du);
-  $uvec3 a = uvec3(ivec3(floor(p))) * step;
-  $uvec3 b = a + step;
+  $uvec3 primes = uvec3(0x9E3779B1u, 0x85EBCA77u, 0xC2B2AE3Du);
+  $uvec3 a = uvec3(ivec3(floor(p))) * primes;
+  $uvec3 b = a + primes;
   $uint y = a.y ^ a.z ^ seed;
   $uint yy = b.y ^ a.z ^ seed;
   $uint z = a.y ^ b.z ^ seed;

@@ -17,6 +17,7 @@
 //! | [`exact_brownian`] | surfaces of known fractal dimension |
 //! | [`process`] | time and memory that this process took |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
+//! | `sources` | figures and tables of the sources, computed again (feature `judges`) |
 //! | `abx`, `compare`, `likeness` | surfaces told apart, and ordered, by strokes through the engine (feature `judges`) |
 
 #[cfg(feature = "judges")]
@@ -33,5 +34,7 @@ pub mod likeness;
 pub mod observer;
 pub mod process;
 pub mod score;
+#[cfg(feature = "judges")]
+pub mod sources;
 pub mod spectrum;
 pub mod stft_peaks;

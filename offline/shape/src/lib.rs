@@ -44,6 +44,7 @@ pub mod surface_mesh;
 pub mod system;
 mod text;
 mod triangle_tree;
+pub mod unwrap;
 pub mod vector;
 pub mod volume_mesh;
 

@@ -6,3 +6,4 @@ mod common;
 mod hostile;
 mod msh;
 mod reports;
+mod unwrap;

@@ -96,6 +96,12 @@ impl Report {
         let size_mm = SizeMm { width_mm, height_mm, texel_mm, relief_mm: 1e3 * surface.relief_m };
         let mut warnings: Vec<String> = surface.doubts.iter().map(ToString::to_string).collect();
         warnings.extend(options.object.stl.as_ref().and(size_mm.warning()));
+        if size_mm.relief_mm > 0.5 * size_mm.width_mm.max(size_mm.height_mm) {
+            warnings.push(format!(
+                "a relief of {:.0} mm on a picture {:.0} mm wide is no surface to touch: give --relief-m, or leave --method out",
+                size_mm.relief_mm, size_mm.width_mm
+            ));
+        }
         Self {
             photo: options.photo.clone(),
             width,
