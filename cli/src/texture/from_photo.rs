@@ -83,7 +83,7 @@ pub struct Options {
 pub enum MethodName {
     /// Slopes that fit the shading and belong to a surface.
     Integrable,
-    /// That of Tsai and Shah (1994), for comparison: its heights are no relief.
+    /// Tsai and Shah (1994), for comparison: its heights are no relief.
     TsaiShah,
     /// Bright is high: for light from everywhere.
     DarkIsDeep,

@@ -21,7 +21,7 @@ pub enum NoiseKind {
     Ridged,
     /// Round heaps between sharp valleys.
     Billow,
-    /// The same from its valleys up.
+    /// Billow from its valleys up.
     Turbulence,
     /// Cells: cones around scattered points.
     Voronoi,

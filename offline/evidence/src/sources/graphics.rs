@@ -45,7 +45,7 @@ pub fn dimensions() -> Result<Found, String> {
     Ok((printed, ours, sentence))
 }
 
-/// What a stroke gives on surfaces of equal height and falling dimension.
+/// Vibration and forces of a stroke on surfaces of equal height and falling dimension.
 pub fn strength() -> Result<Found, String> {
     const RMS_M: f64 = 5e-5;
     const TEXEL_M: f64 = 2e-4;

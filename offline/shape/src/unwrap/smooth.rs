@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 pub(super) enum Rows {
     /// All, as the equation has it.
     All,
-    /// Those inside: each is then the mean of its neighbours, and nothing is turned over.
+    /// Vertices inside: each is then the mean of its neighbours, and nothing is turned over.
     Inside,
 }
 
