@@ -7,9 +7,9 @@
 //! m, v: mean and variance of a feature over the strokes of a surface; σ: the observer's own
 //! deviation, σ̄ their mean: a level that changes in all bands at once is noticed no better than
 //! one that changes in a single band (ours; of independent bands, two cuts of one surface that
-//! differ by 2 dB lay further apart than two materials). d′ is what one stroke tells somebody who knows both surfaces: 1 is about a just
-//! noticeable difference. Both surfaces are stroked at the same places, directions, speeds and
-//! forces, so that a surface is at distance 0 from itself.
+//! differ by 2 dB lay further apart than two materials). d′ is what one stroke tells somebody who
+//! knows both surfaces: 1 is about a just noticeable difference. Both surfaces are stroked at the
+//! same places, directions, speeds and forces, so that a surface is at distance 0 from itself.
 
 use crate::abx::{self, FOLDS, RATE_HZ, Size};
 use crate::observer::constants::THIRD_OCTAVES;
