@@ -15,7 +15,6 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
-#[cfg(feature = "web")]
 mod answer;
 #[cfg(feature = "data-sets")]
 mod batch;
@@ -43,6 +42,7 @@ mod scene_log;
 mod sounds;
 mod strike;
 mod stroke;
+mod study;
 mod texture;
 mod wav;
 mod web;
@@ -80,6 +80,7 @@ enum Verb {
     Report(report::Options),
     Web(web::Options),
     Batch(batch::Options),
+    Study(study::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -99,6 +100,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Report(options) => report::run(&options),
         Verb::Web(options) => web::run(&options),
         Verb::Batch(options) => batch::run(&options),
+        Verb::Study(options) => study::run(&options),
     }
 }
 

@@ -26,6 +26,7 @@ mod report;
 mod sounds;
 mod sources;
 mod stock_bodies;
+mod study;
 mod support;
 #[path = "../../offline/pictures/tests/surfaces/mod.rs"]
 mod surfaces;

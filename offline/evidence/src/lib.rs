@@ -16,6 +16,7 @@
 //! | [`stft_peaks`] | the baseline: modes as peaks of a short-time spectrum |
 //! | [`exact_brownian`] | surfaces of known fractal dimension |
 //! | [`process`] | time and memory that this process took |
+//! | [`statistics`] | answers that people give: shares, means, d′, thresholds |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
 //! | `abx`, `compare` | surfaces told apart by strokes through the engine (feature `judges`) |
 
@@ -32,4 +33,5 @@ pub mod observer;
 pub mod process;
 pub mod score;
 pub mod spectrum;
+pub mod statistics;
 pub mod stft_peaks;
