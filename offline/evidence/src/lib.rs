@@ -18,7 +18,7 @@
 //! | [`process`] | time and memory that this process took |
 //! | [`statistics`] | answers that people give: shares, means, d′, thresholds |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
-//! | `abx`, `compare` | surfaces told apart by strokes through the engine (feature `judges`) |
+//! | `abx`, `compare`, `plates` | surfaces told apart by strokes through the engine (feature `judges`) |
 
 #[cfg(feature = "judges")]
 pub mod abx;
@@ -30,6 +30,8 @@ pub mod cramer_rao;
 pub mod exact_brownian;
 pub mod impact;
 pub mod observer;
+#[cfg(feature = "judges")]
+pub mod plates;
 pub mod process;
 pub mod score;
 pub mod spectrum;
