@@ -186,9 +186,9 @@ fn thresholds_ratings_and_abx_are_reported_with_intervals() {
         })
         .collect();
     write("abx.csv", &abx);
-    // Φ(d′/√2) Φ(d′/2) + Φ(−d′/√2) Φ(−d′/2) = 0.75 at 1.43 (Macmillan and Creelman 2005, table A5.3).
+    // Φ(1.266) Φ(0.895) + Φ(−1.266) Φ(−0.895) = 0.8972 · 0.8146 + 0.1028 · 0.1854 = 0.750.
     let d_prime = analysed(folder.path(), &["abx.csv"])["d_prime"].as_f64().unwrap();
-    assert!((d_prime - 1.43).abs() < 0.02, "{d_prime}");
+    assert!((d_prime - 1.79).abs() < 0.01, "{d_prime}");
     for (name, text, parts) in [
         ("none.csv", "a,b\n".to_owned(), &["none.csv", "is no file of answers"][..]),
         ("short.csv", format!("{HEADER}\np,1,abx\n"), &["short.csv: line 2", "3 fields"]),
@@ -224,7 +224,7 @@ fn the_server_saves_every_answer_as_it_comes_and_answers_nobody_else() {
         .unwrap();
     let ask = |request: &str, host: &str, body: &str| {
         let mut stream = TcpStream::connect(&address).unwrap();
-        write!(stream, "{request} HTTP/1.1\r\nHost: {host}\r\nContent-Length: {}\r\n\r\n{body}", body.len())
+        write!(stream, "{request} HTTP/1.1\r\nHost: {host}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}", body.len())
             .unwrap();
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);

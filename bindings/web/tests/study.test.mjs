@@ -76,7 +76,7 @@ async function listen(page, answer, most = 1e9) {
       if (check) press(check[1]);
       else {
         window.played.length = 0;
-        for (const one of buttons().filter((one) => /Play/.test(one.textContent))) {
+        for (const one of buttons().filter((one) => /Play|Reference/.test(one.textContent))) {
           const count = window.played.length;
           one.click();
           await until(() => window.played.length > count);

@@ -217,7 +217,7 @@ mod tests {
         assert!((t_975(7) - 2.3646).abs() < 2e-3 && (t_975(30) - 2.0423).abs() < 1e-4);
         // 2AFC: d′ = √2 z(p); Φ(0.6745) = 0.75.
         assert!((d_prime(7500, 10_000, 2) - 2f64.sqrt() * 0.67449).abs() < 1e-3);
-        // Macmillan and Creelman 2005, table A5.2: 6-AFC, d′ = 1.5 is right in 0.62.
+        // Of six, d′ = 1.5 is right in 0.62 (the integral by another program).
         assert!((d_prime(62, 100, 6) - 1.5).abs() < 0.05, "{}", d_prime(62, 100, 6));
         assert_eq!(d_prime_abx(40, 100), 0.0);
         assert!(d_prime_abx(10, 10).is_finite());
