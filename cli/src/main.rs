@@ -39,6 +39,7 @@ mod progress;
 mod render;
 mod report;
 mod scene_log;
+mod scorecard;
 mod sounds;
 mod strike;
 mod stroke;
@@ -81,6 +82,7 @@ enum Verb {
     Web(web::Options),
     Batch(batch::Options),
     Study(study::Options),
+    Scorecard(scorecard::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -101,6 +103,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Web(options) => web::run(&options),
         Verb::Batch(options) => batch::run(&options),
         Verb::Study(options) => study::run(&options),
+        Verb::Scorecard(options) => scorecard::run(&options),
     }
 }
 

@@ -23,6 +23,7 @@ mod perceptual_order;
 mod refused_pictures;
 mod render;
 mod report;
+mod scorecard;
 mod sounds;
 mod sources;
 mod stock_bodies;

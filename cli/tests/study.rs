@@ -224,8 +224,12 @@ fn the_server_saves_every_answer_as_it_comes_and_answers_nobody_else() {
         .unwrap();
     let ask = |request: &str, host: &str, body: &str| {
         let mut stream = TcpStream::connect(&address).unwrap();
-        write!(stream, "{request} HTTP/1.1\r\nHost: {host}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}", body.len())
-            .unwrap();
+        write!(
+            stream,
+            "{request} HTTP/1.1\r\nHost: {host}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}",
+            body.len()
+        )
+        .unwrap();
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
         String::from_utf8_lossy(&answer).into_owned()

@@ -31,8 +31,10 @@ pub const NAMES: [&str; 5] = ["six-plates", "seven-materials", "metamers", "heig
 const TAKES: u64 = 3;
 /// Side of a surface that is stroked, m.
 const SIDE_M: f64 = 0.14;
-/// Texels a side of the reliefs of metamers (40 mm) and heights.
-const TEXELS: usize = 256;
+/// Texels a side of the reliefs of metamers and heights, and that side, m.
+const TEXELS: usize = 128;
+/// See [`TEXELS`].
+const MAP_M: f64 = 0.04;
 /// The five reliefs of the metamers; the first is the one the others are made like.
 const RELIEFS: [&str; 5] = ["dots", "weave", "ribs", "bricks", "waves"];
 /// Materials whose names the answers sort by.
@@ -112,9 +114,16 @@ impl Example<'_> {
     }
 
     /// A surface stroked along both axes: scene, log, stimulus.
-    fn stroked(&mut self, name: &str, file: &str, seed: u64, toml: &str, more: &str) -> Result<(), CliError> {
+    fn stroked(
+        &mut self,
+        name: &str,
+        file: &str,
+        (seed, side_m): (u64, f64),
+        toml: &str,
+        more: &str,
+    ) -> Result<(), CliError> {
         let mut lines = Vec::new();
-        strokes(seed).write(&mut lines).map_err(|error| CliError::write(self.folder, &error))?;
+        strokes(seed, side_m).write(&mut lines).map_err(|error| CliError::write(self.folder, &error))?;
         self.file(&format!("{file}.jsonl"), &lines)?;
         self.file(
             &format!("{file}.toml"),
@@ -140,7 +149,7 @@ impl Example<'_> {
                 self.stroked(
                     name,
                     &format!("{name}-{take}"),
-                    seed,
+                    (seed, SIDE_M),
                     &toml,
                     &format!("picture = \"{name}.png\"\n"),
                 )?;
@@ -161,8 +170,8 @@ impl Example<'_> {
             let name = material.name();
             let file = name.replace(' ', "-");
             for take in 1..=TAKES {
-                let toml = surface(&format!("solid = \"{name}\"\nmicro_relief_m = 0.0\n"));
-                self.stroked(name, &format!("{file}-{take}"), 10 * index as u64 + take, &toml, "")?;
+                let toml = surface(&format!("solid = \"{name}\"\nmicro_relief_m = 0.0\n"), SIDE_M);
+                self.stroked(name, &format!("{file}-{take}"), (10 * index as u64 + take, SIDE_M), &toml, "")?;
             }
         }
         let stimuli = self.study[self.study.find("\n[[").unwrap_or(0)..].to_owned();
@@ -175,12 +184,12 @@ impl Example<'_> {
     fn metamers(&mut self) -> Result<(), CliError> {
         self.head("Metamers", "abx", 4, "");
         let originals: Vec<Raster> = RELIEFS.iter().map(|name| relief(name)).collect();
-        let alike = all_like_the_first(&originals, Method::Iterated(10), |_| {})
+        let alike = all_like_the_first(&originals, Method::Iterated(4), |_| {})
             .map_err(|(_, error)| CliError::from_error(error))?;
         for (set, letter, maps) in [("originals", 'O', &originals), ("metamers", 'M', &alike)] {
             for (index, map) in maps.iter().enumerate() {
                 let name = format!("{letter}{}", index + 1);
-                self.map(&name, &name, map, 0.002, 0.04, &format!("set = \"{set}\"\n"), index as u64)?;
+                self.map(&name, &name, map, 5e-4, &format!("set = \"{set}\"\n"), index as u64)?;
             }
         }
         Ok(())
@@ -193,15 +202,7 @@ impl Example<'_> {
                 let relief_m = 0.0002 * f64::from(factor);
                 let file = format!("{pattern}-{factor}");
                 let seed = 1 + index as u64;
-                self.map(
-                    &format!("{pattern} × {factor}"),
-                    &file,
-                    &relief(pattern),
-                    relief_m,
-                    0.04,
-                    "",
-                    seed,
-                )?;
+                self.map(&format!("{pattern} × {factor}"), &file, &relief(pattern), relief_m, "", seed)?;
             }
         }
         Ok(())
@@ -211,10 +212,12 @@ impl Example<'_> {
         self.head("Fractal dimension", "rating", 2, "scales = [\"roughness\"]\nquestion = \"How rough is it, from 0 (smooth) to 100 (very rough)?\"\n");
         for tenths in [1, 3, 5, 7, 9] {
             let hurst = f64::from(tenths) / 10.0;
-            let toml =
-                surface(&format!("brownian = {{ hurst = {hurst}, rms_m = 5e-5 }}\nmicro_relief_m = 0.0\n"));
+            let toml = surface(
+                &format!("brownian = {{ hurst = {hurst}, rms_m = 5e-5 }}\nmicro_relief_m = 0.0\n"),
+                SIDE_M,
+            );
             let name = format!("dimension {}", f64::from(30 - tenths) / 10.0);
-            self.stroked(&name, &format!("hurst-{hurst}"), 7, &toml, "")?;
+            self.stroked(&name, &format!("hurst-{hurst}"), (7, SIDE_M), &toml, "")?;
         }
         Ok(())
     }
@@ -226,7 +229,6 @@ impl Example<'_> {
         file: &str,
         map: &Raster,
         relief_m: f64,
-        width_m: f64,
         more: &str,
         seed: u64,
     ) -> Result<(), CliError> {
@@ -234,28 +236,24 @@ impl Example<'_> {
             map.values.iter().map(|x| (x.clamp(0.0, 1.0) * 65_535.0).round() as u16).collect();
         self.file(&format!("{file}.png"), &pixels::png16(map.width, map.height, &grey))?;
         let keys = format!(
-            "displacement = \"{file}.png\"\nwidth_m = {width_m}\nheight_m = {width_m}\nrelief_m = {relief_m}\nroughness = 0.2\n"
+            "displacement = \"{file}.png\"\nrelief_m = {relief_m}\nroughness = 0.2\nwrap = \"repeat\"\n"
         );
-        self.stroked(name, file, seed, &surface(&keys), more)
+        self.stroked(name, file, (seed, MAP_M), &surface(&keys, MAP_M), more)
     }
 }
 
 /// A surface of these keys on a plate of PLA; one level for all, so that they stay comparable.
-fn surface(keys: &str) -> String {
-    let size = if keys.contains("width_m") {
-        String::new()
-    } else {
-        format!("width_m = {SIDE_M}\nheight_m = {SIDE_M}\n")
-    };
+fn surface(keys: &str, side_m: f64) -> String {
     format!(
         "tail_s = 0.3\n\n[[body]]\nname = \"plate\"\nstock = \"plate\"\nmaterial = \"pla\"\nsize_m = {SIDE_M}\n\n\
-         [[surface]]\nname = \"plate\"\nbody = \"plate\"\n{size}{keys}\n\
+         [[surface]]\nname = \"plate\"\nbody = \"plate\"\nwidth_m = {side_m}\nheight_m = {side_m}\n{keys}\n\
          [[actuator]]\noutput = \"displacement\"\nfull_scale = 1e-3\n\n[audio]\ngain = 1.0\n"
     )
 }
 
-/// Across and back along u, then along v, at speeds and forces of the seed.
-fn strokes(seed: u64) -> asperity::files::contact_log::ContactLog {
+/// Across and back along u, then along v, at speeds and forces of the seed; a map of a smaller side
+/// repeats.
+fn strokes(seed: u64, side_m: f64) -> asperity::files::contact_log::ContactLog {
     let mut rng = Rng::new(seed);
     let mut near = |middle: f64| middle * (0.8 + 0.4 * rng.uniform());
     let row_m = near(0.07);
@@ -263,7 +261,7 @@ fn strokes(seed: u64) -> asperity::files::contact_log::ContactLog {
         contact: 1,
         surface: "plate",
         actuator: 0,
-        extent_m: [SIDE_M; 2],
+        extent_m: [side_m; 2],
         start_s: 0.1,
         normal_force_n: near(0.6),
         from_m: [0.018, row_m],

@@ -19,6 +19,7 @@
 //! | [`statistics`] | answers that people give: shares, means, d′, thresholds |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
 //! | `abx`, `compare`, `plates` | surfaces told apart by strokes through the engine (feature `judges`) |
+//! | `growth` | how what is felt grows with speed and force (feature `judges`) |
 
 #[cfg(feature = "judges")]
 pub mod abx;
@@ -28,6 +29,8 @@ pub mod compare;
 pub mod corpus;
 pub mod cramer_rao;
 pub mod exact_brownian;
+#[cfg(feature = "judges")]
+pub mod growth;
 pub mod impact;
 pub mod observer;
 #[cfg(feature = "judges")]
