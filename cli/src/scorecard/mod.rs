@@ -55,7 +55,7 @@ pub struct Matrix {
     paper: Option<Vec<Vec<f64>>>,
 }
 
-/// What a part gives.
+/// Rows and matrices of a part.
 #[derive(Debug, Default)]
 pub struct Part {
     rows: Vec<Row>,

@@ -311,7 +311,7 @@ fn relief(name: &str) -> Raster {
             }
             "ribs" => (wave(12.0 * u) * 3.0).min(1.0),
             "bricks" => {
-                let shift = if (8.0 * v) as usize % 2 == 0 { 0.0 } else { 0.5 };
+                let shift = if ((8.0 * v) as usize).is_multiple_of(2) { 0.0 } else { 0.5 };
                 let joint = |x: f64| (x.fract().min(1.0 - x.fract()) * 12.0).min(1.0);
                 joint(4.0 * u + shift).min(joint(8.0 * v))
             }

@@ -39,9 +39,9 @@ pub enum Senses {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
-    /// What the others are compared with; rated among them without its name.
+    /// Standard of the others; rated among them without its name.
     Reference,
-    /// What is meant to be worst.
+    /// The one meant to be worst.
     Anchor,
 }
 
@@ -57,7 +57,7 @@ pub struct Study {
     pub trials: u32,
     /// Seed of the order.
     pub seed: u64,
-    /// What is played.
+    /// Channels that are played.
     #[serde(default)]
     pub senses: Senses,
     /// A screen on which every stimulus may be played before.
@@ -81,7 +81,7 @@ pub struct Study {
     /// Names to choose from; missing: those of the stimuli.
     #[serde(default)]
     pub labels: Vec<String>,
-    /// What is rated, a slider each.
+    /// Scales of a rating, a slider each.
     #[serde(default)]
     pub scales: Vec<String>,
     /// Stimuli; several of one name are takes of it.

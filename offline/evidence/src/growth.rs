@@ -1,4 +1,5 @@
-//! Growth of a haptic channel with speed and force, over a flat plate with the default micro-relief.
+//! Growth of a haptic channel with speed and force, over a flat plate with the default
+//! micro-relief.
 
 use asperity::files::FileError;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};

@@ -149,7 +149,7 @@ fn ways(seed: u64) -> [Way; 2] {
     })
 }
 
-/// What both observers know of one exploration.
+/// Percepts of one exploration, for both observers.
 #[derive(Debug, Clone)]
 pub struct Explored {
     /// By touch and by ear, as the first observer takes it.

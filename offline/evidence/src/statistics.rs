@@ -14,8 +14,8 @@ use asperity_dsp::rng::Rng;
 const Z: f64 = 1.959_963_985;
 /// Share of answers that have nothing to do with the stimulus, in a psychometric function.
 const LAPSE: f64 = 0.02;
-/// Factor on the half-width of intervals of thresholds: answers that a staircase has chosen cover 93.7 %
-/// without it.
+/// Factor on the half-width of intervals of thresholds: answers that a staircase has chosen cover
+/// 93.7 % without it.
 const SEQUENTIAL: f64 = 1.05;
 /// Samples of a bootstrap.
 const RESAMPLES: usize = 2000;
@@ -245,7 +245,8 @@ mod tests {
         let mut rng = Rng::new(3);
         let (mut covered, mut logs) = (0, 0.0);
         for _ in 0..2000 {
-            // Three down, one up over levels a factor of 1.26 apart; the truth is a logistic function.
+            // Three down, one up over levels a factor of 1.26 apart; the truth is a logistic
+            // function.
             let truth = 2.0 * 3f64.powf(rng.uniform());
             let (mut index, mut streak) = (12i32, 0);
             let mut answers = Vec::new();
