@@ -223,7 +223,7 @@ pub fn growth_laws(_quick: bool) -> Result<Part> {
     Ok(part)
 }
 
-/// What device models leave of made vibrations.
+/// Errors of device models on a made vibration.
 pub fn ports(_quick: bool) -> Result<Part> {
     let mut part = Part::default();
     let rate_hz = 8000.0;
