@@ -14,6 +14,9 @@ const COUNT: u64 = 16;
 /// Seeds that nothing was tried on before: templates, trials.
 const FROM: [u64; 2] = [150_000, 190_000];
 
+/// A surface of a seed.
+type Make = dyn Fn(u64) -> Result<Surface, FileError>;
+
 fn told(tables: &[Table], names: &[&str]) {
     println!("observers {} {}", constants::constants_sha256(), second::constants_sha256());
     let chance = 1.0 / names.len() as f64;
@@ -64,9 +67,8 @@ fn a_rhythm_over_the_period_of_the_ground_is_heard_and_steady_noise_is_not() {
 
 #[test]
 fn both_observers_say_what_they_say_of_the_six_plates() {
-    let of: Vec<Box<dyn Fn(u64) -> Result<Surface, FileError>>> =
-        PLATES.iter().map(|name| Box::new(move |_| plate(name)) as _).collect();
-    let surfaces: Vec<&dyn Fn(u64) -> Result<Surface, FileError>> = of.iter().map(AsRef::as_ref).collect();
+    let of: Vec<Box<Make>> = PLATES.iter().map(|name| Box::new(move |_| plate(name)) as _).collect();
+    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
     let pascals = pascals().unwrap();
     let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, true).unwrap());
     told(&judge(&known, &asked, &CONDITIONS), &PLATES);
@@ -78,9 +80,9 @@ fn both_observers_say_what_they_say_of_the_six_plates() {
 
 #[test]
 fn both_observers_say_what_they_say_of_the_seven_materials() {
-    let of: Vec<Box<dyn Fn(u64) -> Result<Surface, FileError>>> =
+    let of: Vec<Box<Make>> =
         SolidMaterial::SEVEN.iter().map(|one| Box::new(move |seed| material(*one, seed)) as _).collect();
-    let surfaces: Vec<&dyn Fn(u64) -> Result<Surface, FileError>> = of.iter().map(AsRef::as_ref).collect();
+    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
     let names = SolidMaterial::SEVEN.map(SolidMaterial::name);
     let pascals = pascals().unwrap();
     let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, false).unwrap());
