@@ -6,7 +6,7 @@
 //! ever. So none stays open.
 
 use std::io::{self, Write};
-use tiny_http::{Method, Request, StatusCode};
+use tiny_http::{Method, Request, Server, StatusCode};
 
 /// Plain words.
 pub const WORDS: &str = "text/plain; charset=utf-8";
@@ -16,6 +16,23 @@ pub fn answer(request: Request, status: u16, kind: &str, body: &[u8]) {
     let is_body_wanted = *request.method() != Method::Head;
     let mut to = request.into_writer();
     let _ = write(&mut to, status, kind, body.len(), if is_body_wanted { body } else { &[] });
+}
+
+/// Tests whether a request comes from this machine's own page: its `Host` and `Origin` are this
+/// server's.
+pub fn is_ours(server: &Server, request: &Request) -> bool {
+    let own = server.server_addr().to_string();
+    let port = own.rsplit(':').next().unwrap_or_default();
+    let hosts = [own.clone(), format!("localhost:{port}")];
+    let header = |name: &'static str| {
+        let found = request.headers().iter().find(|header| header.field.equiv(name));
+        found.map(|header| header.value.as_str().to_owned())
+    };
+    let is_host = header("Host").is_some_and(|host| hosts.contains(&host));
+    let is_origin = header("Origin").is_none_or(|origin| {
+        origin.strip_prefix("http://").is_some_and(|host| hosts.iter().any(|own| own == host))
+    });
+    is_host && is_origin
 }
 
 fn write(to: &mut dyn Write, status: u16, kind: &str, bytes: usize, body: &[u8]) -> io::Result<()> {

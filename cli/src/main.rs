@@ -15,7 +15,6 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
-#[cfg(feature = "web")]
 mod answer;
 #[cfg(feature = "data-sets")]
 mod batch;
@@ -41,9 +40,11 @@ mod progress;
 mod render;
 mod report;
 mod scene_log;
+mod scorecard;
 mod sounds;
 mod strike;
 mod stroke;
+mod study;
 mod texture;
 mod unwrap;
 mod wav;
@@ -83,6 +84,8 @@ enum Verb {
     Evidence(evidence::Options),
     Web(web::Options),
     Batch(batch::Options),
+    Study(study::Options),
+    Scorecard(scorecard::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -103,6 +106,8 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Evidence(options) => evidence::run(&options),
         Verb::Web(options) => web::run(&options),
         Verb::Batch(options) => batch::run(&options),
+        Verb::Study(options) => study::run(&options),
+        Verb::Scorecard(options) => scorecard::run(&options),
     }
 }
 

@@ -12,7 +12,7 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 18] = [
+const READ: [&str; 20] = [
     "scene",
     "recording",
     "further",
@@ -31,6 +31,8 @@ const READ: [&str; 18] = [
     "reference",
     "spec",
     "what",
+    "study",
+    "answers",
 ];
 
 /// Arguments that are pictures or folders of pictures to read.

@@ -24,9 +24,11 @@ mod perceptual_order;
 mod refused_pictures;
 mod render;
 mod report;
+mod scorecard;
 mod sounds;
 mod sources;
 mod stock_bodies;
+mod study;
 mod support;
 #[path = "../../offline/pictures/tests/surfaces/mod.rs"]
 mod surfaces;

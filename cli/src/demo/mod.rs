@@ -11,9 +11,9 @@ mod demo_scene;
 mod gallery;
 mod index;
 mod loudness;
-mod plates;
-mod scenes;
-mod strokes;
+pub mod plates;
+pub mod scenes;
+pub mod strokes;
 
 use crate::error::CliError;
 use crate::fit;

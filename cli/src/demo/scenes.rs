@@ -23,7 +23,8 @@ pub fn scenes() -> Vec<DemoScene> {
 }
 
 /// A plate stroked across and back, slowly and fast.
-fn plate_scene(plate: &Plate) -> DemoScene {
+#[must_use]
+pub fn plate_scene(plate: &Plate) -> DemoScene {
     let (side, grey) = plate.displacement();
     let (rough_side, rough) = plate.roughness();
     let name = plate.name;

@@ -16,9 +16,11 @@
 //! | [`stft_peaks`] | the baseline: modes as peaks of a short-time spectrum |
 //! | [`exact_brownian`] | surfaces of known fractal dimension |
 //! | [`process`] | time and memory that this process took |
+//! | [`statistics`] | answers that people give: shares, means, d′, thresholds |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
 //! | `sources` | figures and tables of the sources, computed again (feature `judges`) |
-//! | `abx`, `compare`, `likeness` | surfaces told apart, and ordered, by strokes through the engine (feature `judges`) |
+//! | `abx`, `compare`, `likeness`, `plates` | surfaces told apart, and ordered, by strokes through the engine (feature `judges`) |
+//! | `growth` | how what is felt grows with speed and force (feature `judges`) |
 
 #[cfg(feature = "judges")]
 pub mod abx;
@@ -28,13 +30,18 @@ pub mod compare;
 pub mod corpus;
 pub mod cramer_rao;
 pub mod exact_brownian;
+#[cfg(feature = "judges")]
+pub mod growth;
 pub mod impact;
 #[cfg(feature = "judges")]
 pub mod likeness;
 pub mod observer;
+#[cfg(feature = "judges")]
+pub mod plates;
 pub mod process;
 pub mod score;
 #[cfg(feature = "judges")]
 pub mod sources;
 pub mod spectrum;
+pub mod statistics;
 pub mod stft_peaks;

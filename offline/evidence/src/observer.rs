@@ -20,6 +20,7 @@
 
 pub mod constants;
 pub mod judge;
+pub mod second;
 pub mod sound;
 mod spectra;
 pub mod touch;

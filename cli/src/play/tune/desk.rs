@@ -13,7 +13,7 @@
 //! A request that another page sends is refused: its `Host` or `Origin` is not this address.
 
 use super::Tuned;
-use crate::answer::{WORDS, answer};
+use crate::answer::{WORDS, answer, is_ours};
 use crate::error::CliError;
 use serde::Deserialize;
 use serde_json::json;
@@ -77,7 +77,7 @@ impl Desk {
 
     fn one(&self, mut request: Request, tuned: &mut Tuned<'_>) -> bool {
         let path = request.url().split(['?', '#']).next().unwrap_or_default().to_owned();
-        if !self.is_ours(&request) {
+        if !is_ours(&self.server, &request) {
             answer(request, 403, WORDS, b"only the page itself is answered");
             return true;
         }
@@ -110,22 +110,6 @@ impl Desk {
         };
         answer(request, status, "application/json", text.to_string().as_bytes());
         path != "/end" || done.is_err()
-    }
-
-    /// Tests whether a request comes from this machine's own page.
-    fn is_ours(&self, request: &Request) -> bool {
-        let own = self.server.server_addr().to_string();
-        let port = own.rsplit(':').next().unwrap_or_default();
-        let hosts = [own.clone(), format!("localhost:{port}")];
-        let header = |name: &'static str| {
-            let found = request.headers().iter().find(|header| header.field.equiv(name));
-            found.map(|header| header.value.as_str().to_owned())
-        };
-        let is_host = header("Host").is_some_and(|host| hosts.contains(&host));
-        let is_origin = header("Origin").is_none_or(|origin| {
-            origin.strip_prefix("http://").is_some_and(|host| hosts.iter().any(|own| own == host))
-        });
-        is_host && is_origin
     }
 }
 

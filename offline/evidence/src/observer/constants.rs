@@ -89,7 +89,7 @@ pub fn hearing_threshold_db(frequency_hz: f64) -> f64 {
 }
 
 /// Linear in log f between the points of a table, held beyond its ends.
-fn between(table: &[(f64, f64)], frequency_hz: f64) -> f64 {
+pub(crate) fn between(table: &[(f64, f64)], frequency_hz: f64) -> f64 {
     let mut value = table[0].1;
     for pair in table.windows(2) {
         let part = (frequency_hz / pair[0].0).ln() / (pair[1].0 / pair[0].0).ln();

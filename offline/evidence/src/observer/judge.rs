@@ -45,7 +45,7 @@ impl Percept {
         known.map(apart).filter(|x| x.is_finite()).sum::<f64>().sqrt()
     }
 
-    fn noisy(&self, kappa: f64, rng: &mut Rng) -> Self {
+    pub(crate) fn noisy(&self, kappa: f64, rng: &mut Rng) -> Self {
         let feature = |f: &Feature| Feature { value: f.value + kappa * f.sd * rng.normal(), ..*f };
         Self { features: self.features.iter().map(feature).collect() }
     }

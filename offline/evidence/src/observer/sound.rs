@@ -8,7 +8,7 @@ use crate::observer::spectra::{Band, Spectra, looks, mean, over_threshold_db};
 use crate::observer::touch::{Hand, chance_db, fluctuations, places};
 
 /// Power of the quietest pure tone, Pa²: 20 µPa at the threshold of its frequency.
-fn threshold_pa2(frequency_hz: f64) -> f64 {
+pub(crate) fn threshold_pa2(frequency_hz: f64) -> f64 {
     4e-10 * 10f64.powf(hearing_threshold_db(frequency_hz.clamp(20.0, 18_000.0)) / 10.0)
 }
 

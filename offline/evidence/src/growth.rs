@@ -1,0 +1,90 @@
+//! Growth of a haptic channel with speed and force, over a flat plate with the default
+//! micro-relief.
+
+use asperity::files::FileError;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
+use asperity::offline::{self, Options};
+use asperity::{ActuatorSettings, Config, Engine, Quantity, Surface, probe_by_name};
+use std::collections::HashMap;
+
+/// Speeds, m/s, and forces, N, of the strokes.
+const SPEEDS_M_S: [f64; 3] = [0.04, 0.12, 0.24];
+/// See [`SPEEDS_M_S`].
+const FORCES_N: [f64; 3] = [0.3, 1.5, 5.0];
+/// Side of the plate, m.
+const SIDE_M: f64 = 0.14;
+
+/// Exponents of a level over speed and force, and the level at 120 mm/s and 1.5 N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Growth {
+    /// Level ∝ v to this power.
+    pub speed_exponent: f64,
+    /// Level ∝ F to this power.
+    pub force_exponent: f64,
+    /// Root mean square, in the quantity's unit.
+    pub level: f64,
+}
+
+/// Growth of what a probe feels of a plate of this roughness.
+///
+/// # Errors
+/// When the engine refuses the probe or the plate.
+pub fn growth(probe: &str, quantity: Quantity, roughness: f64) -> Result<Growth, FileError> {
+    let mut levels = [[0.0; 3]; 3];
+    for (row, speed_m_s) in levels.iter_mut().zip(SPEEDS_M_S) {
+        for (level, force_n) in row.iter_mut().zip(FORCES_N) {
+            *level = rms(probe, quantity, roughness, speed_m_s, force_n)?;
+        }
+    }
+    let slope = |x: [f64; 3], of: &dyn Fn(usize) -> f64| {
+        let x = x.map(f64::ln);
+        let mean = x.iter().sum::<f64>() / 3.0;
+        let (xy, xx) =
+            (0..3).fold((0.0, 0.0), |(xy, xx), i| (xy + (x[i] - mean) * of(i), xx + (x[i] - mean).powi(2)));
+        xy / xx
+    };
+    let by_speed = |i: usize| levels[i].iter().map(|x: &f64| x.ln()).sum::<f64>() / 3.0;
+    let by_force = |i: usize| levels.iter().map(|row| row[i].ln()).sum::<f64>() / 3.0;
+    Ok(Growth {
+        speed_exponent: slope(SPEEDS_M_S, &by_speed),
+        force_exponent: slope(FORCES_N, &by_force),
+        level: levels[1][1],
+    })
+}
+
+/// Level of one stroke of a second after its first 0.2 s.
+fn rms(
+    probe: &str,
+    output: Quantity,
+    roughness: f64,
+    speed_m_s: f64,
+    force_n: f64,
+) -> Result<f64, FileError> {
+    let probe = probe_by_name(probe).ok_or_else(|| FileError::new("probe", "is unknown", "name a preset"))?;
+    let actuators = vec![ActuatorSettings { full_scale: 1.0, output, ..ActuatorSettings::default() }];
+    let config = Config { probe, actuators, ..Config::default() };
+    let Engine { mut scene, renderer, .. } = config.build().map_err(FileError::from_error)?;
+    let surface = Surface::flat(SIDE_M, SIDE_M).map_err(FileError::from_error)?;
+    let surface = surface.roughness(asperity::Roughness::Constant(roughness));
+    let id = scene.add_surface(surface).map_err(FileError::from_error)?;
+    let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
+    let sample = |t: f64| ContactSample {
+        uv: [0.1 + speed_m_s * t / SIDE_M, 0.525],
+        velocity_m_s: Some([speed_m_s, 0.0]),
+        normal_force_n: force_n,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    };
+    let event = |step: usize, t: f64| {
+        if step == 0 { LogEvent::begin(1, "s", 0, sample(t)) } else { LogEvent::moved(1, sample(t)) }
+    };
+    let mut lines: Vec<LogLine> = (0..60)
+        .map(|step| LogLine { t: step as f64 / 60.0, event: event(step, step as f64 / 60.0) })
+        .collect();
+    lines.push(LogLine { t: 1.0, event: LogEvent::End { contact: 1 } });
+    let options = Options { tail_s: 0.0, ..Options::default() };
+    let render = offline::render(scene, renderer, &ContactLog { lines }, &names, &options);
+    let render = render.map_err(FileError::from_error)?;
+    let felt = &render.haptic[0][(0.2 * render.sample_rate_hz) as usize..];
+    Ok((felt.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / felt.len().max(1) as f64).sqrt())
+}

@@ -1,0 +1,90 @@
+//! Six plates and seven materials by both observers. What they say is printed and stands in
+//! `docs/lab/feel.md`, whatever it is; held to are the controls.
+
+use asperity::Surface;
+use asperity::files::FileError;
+use asperity::surface::solid_materials::SolidMaterial;
+use asperity_evidence::observer::{constants, second};
+use asperity_evidence::plates::{
+    CONDITIONS, PLATES, Table, against_itself, judge, lot, material, pascals, plate,
+};
+
+/// Templates and trials a class; people had 24 trials a plate and 16 a material.
+const COUNT: u64 = 16;
+/// Seeds that nothing was tried on before: templates, trials.
+const FROM: [u64; 2] = [150_000, 190_000];
+
+/// A surface of a seed.
+type Make = dyn Fn(u64) -> Result<Surface, FileError>;
+
+fn told(tables: &[Table], names: &[&str]) {
+    println!("observers {} {}", constants::constants_sha256(), second::constants_sha256());
+    let chance = 1.0 / names.len() as f64;
+    let se = (chance * (1.0 - chance) / (names.len() as f64 * COUNT as f64)).sqrt();
+    for table in tables {
+        let each: Vec<String> =
+            (0..names.len()).map(|i| format!("{:.2}", table.confusion.right(i))).collect();
+        let [half, two, none] = table.other_kappa;
+        println!(
+            "{} {}: {} mean {:.3}; κ ½ {half:.3}, 2 {two:.3}, 0 {none:.3}; shuffled {:.3}",
+            table.observer,
+            table.condition,
+            each.join(" "),
+            table.confusion.mean(),
+            table.shuffled
+        );
+        names.iter().zip(&table.confusion.counts).for_each(|(name, row)| println!("{name:>12} {row:?}"));
+        assert!((table.shuffled - chance).abs() < 2.0 * se, "{} {}", table.observer, table.condition);
+    }
+}
+
+#[test]
+fn the_second_observer_s_constants_are_those_that_were_fixed_before_it_was_asked() {
+    assert_eq!(
+        second::constants_sha256(),
+        "ed5cba719d6160e8954fc33859e9f77161c2a63b5432de632433d7edee9342d6"
+    );
+}
+
+#[test]
+fn a_rhythm_over_the_period_of_the_ground_is_heard_and_steady_noise_is_not() {
+    let rate_hz = 44_100.0;
+    let mut rng = asperity_dsp::rng::Rng::new(5);
+    let mut depths = |depth: f64, rate: f64| {
+        let beat = |n: usize| 1.0 + depth * (std::f64::consts::TAU * rate * n as f64 / rate_hz).sin();
+        let noise: Vec<f64> = (0..66_150).map(|n| 0.05 * beat(n) * rng.normal()).collect();
+        second::rhythm(&noise, rate_hz, 0.1, |_| 1e9).iter().map(|f| f.value).collect::<Vec<f64>>()
+    };
+    // 0.1 m/s over 8 mm: 12.5 Hz, the fifth of nine periods.
+    let (beating, steady) = (depths(0.5, 12.5), depths(0.0, 12.5));
+    // Full depth 0.5 is −6 dB, the threshold −24.4 dB.
+    assert!((beating[9 + 4] - 18.4).abs() < 1.5, "{beating:?}");
+    assert!(beating[9 + 4] > steady[9 + 4] + 6.0, "{beating:?}\n{steady:?}");
+    assert!((beating[9 + 1] - steady[9 + 1]).abs() < 6.0, "{beating:?}\n{steady:?}");
+    // 0.1 m/s over 32 mm is 3 Hz, and no rhythm.
+    assert!(beating[0].is_nan());
+}
+
+#[test]
+fn both_observers_say_what_they_say_of_the_six_plates() {
+    let of: Vec<Box<Make>> = PLATES.iter().map(|name| Box::new(move |_| plate(name)) as _).collect();
+    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
+    let pascals = pascals().unwrap();
+    let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, true).unwrap());
+    told(&judge(&known, &asked, &CONDITIONS), &PLATES);
+    let itself = against_itself(&known, &asked);
+    println!("a plate against itself: {itself:?}");
+    let se = (0.25 / (6.0 * COUNT as f64)).sqrt();
+    assert!(itself.iter().all(|right| (right - 0.5).abs() < 2.0 * se), "{itself:?}");
+}
+
+#[test]
+fn both_observers_say_what_they_say_of_the_seven_materials() {
+    let of: Vec<Box<Make>> =
+        SolidMaterial::SEVEN.iter().map(|one| Box::new(move |seed| material(*one, seed)) as _).collect();
+    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
+    let names = SolidMaterial::SEVEN.map(SolidMaterial::name);
+    let pascals = pascals().unwrap();
+    let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, false).unwrap());
+    told(&judge(&known, &asked, &CONDITIONS[..1]), &names);
+}
