@@ -12,7 +12,10 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 18] = [
+const READ: [&str; 21] = [
+    "strokes",
+    "ring",
+    "colour",
     "scene",
     "recording",
     "further",

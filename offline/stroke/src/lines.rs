@@ -52,6 +52,8 @@ const PADDED: usize = 4;
 const FOLLOWED: [f64; 3] = [0.25, 0.12, 0.08];
 /// Cutoff to which the followed phase is smoothed, Hz.
 const WANDER_HZ: f64 = 6.0;
+/// Hump over its third octave that is no chance, dB.
+const SMEARED_DB: f64 = -6.0;
 /// Line over its third octave from which its phase is trusted, dB.
 const TRUSTED_DB: f64 = 0.0;
 /// Lines that are told.
@@ -95,7 +97,7 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
     }
     if hump.over_db < TRUSTED_DB {
         // Smeared, and too weak to follow.
-        return Lines { lines: Vec::new(), wander: 0.0, is_smeared: hump.is_wide };
+        return Lines { lines: Vec::new(), wander: 0.0, is_smeared: hump.is_wide && hump.over_db > SMEARED_DB };
     }
     let (followed, wander, period_m) = follow(height, &path, stroke, hump.period_m);
     let lines = peaks(&followed);

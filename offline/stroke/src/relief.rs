@@ -193,6 +193,8 @@ pub struct PowerLaw {
     pub at_1mm_m: f64,
     /// Wavelength above which the spectrum is flat, m; none was seen where it is ∞.
     pub outer_scale_m: f64,
+    /// True where it turns flat over octaves, as the engine's law does, and not at once.
+    pub is_gradual: bool,
 }
 
 /// Wavelength at which a power law has its level, m.
@@ -216,7 +218,8 @@ impl PowerLaw {
     #[must_use]
     pub fn level_db(&self, band: usize, tip_radius_m: f64) -> f64 {
         let q = wavenumber(band);
-        let flat = q.max(1.0 / self.outer_scale_m);
+        let knee = 1.0 / self.outer_scale_m;
+        let flat = if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
         // Rms of an octave about 1 mm: ∫ S dq from q/√2 to q√2.
         let octave = octave_integral(self.alpha) / PINNED_M;
         db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat * PINNED_M).log10()
@@ -228,10 +231,11 @@ impl PowerLaw {
     pub fn through(bands: &[Band], tip_radius_m: f64) -> Self {
         let mut best: Option<(f64, Self)> = None;
         let longest = bands.first().map_or(0, |band| band.band);
-        let scales = std::iter::once(f64::INFINITY)
-            .chain((longest..longest + 12).map(|band| 1.0 / wavenumber(band)));
-        for outer_scale_m in scales {
-            let (misfit, law) = Self::fitted(bands, tip_radius_m, outer_scale_m);
+        let knees = (longest..longest + 12).map(|band| 1.0 / wavenumber(band));
+        let scales = std::iter::once((f64::INFINITY, false))
+            .chain(knees.flat_map(|scale_m| [(scale_m, false), (scale_m, true)]));
+        for (outer_scale_m, is_gradual) in scales {
+            let (misfit, law) = Self::fitted(bands, tip_radius_m, outer_scale_m, is_gradual);
             // An outer scale is a constant more: it has to earn it.
             let misfit = misfit + if outer_scale_m.is_finite() { 9.0 } else { 0.0 };
             if best.as_ref().is_none_or(|(least, _)| misfit < *least) {
@@ -239,16 +243,23 @@ impl PowerLaw {
             }
         }
         best.map_or(
-            Self { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: 0.0, outer_scale_m: f64::INFINITY },
+            Self {
+                alpha: 2.0,
+                alpha_se: f64::INFINITY,
+                at_1mm_m: 0.0,
+                outer_scale_m: f64::INFINITY,
+                is_gradual: false,
+            },
             |(_, law)| law,
         )
     }
 
     /// Gauss–Newton over exponent and level.
-    fn fitted(bands: &[Band], tip_radius_m: f64, outer_scale_m: f64) -> (f64, Self) {
+    fn fitted(bands: &[Band], tip_radius_m: f64, outer_scale_m: f64, is_gradual: bool) -> (f64, Self) {
         let pinned = bands.iter().min_by_key(|band| band.band.abs_diff(30));
         let level_m = pinned.map_or(1e-6, |band| 10f64.powf(0.05 * band.level_db) * 20.0);
-        let mut law = Self { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: level_m, outer_scale_m };
+        let mut law =
+            Self { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: level_m, outer_scale_m, is_gradual };
         let mut misfit = f64::INFINITY;
         for _ in 0..30 {
             let mut normal = [0.0f64; 5];
@@ -387,4 +398,36 @@ fn end_slope(bands: &[Band]) -> f64 {
     let xx: f64 = bands.iter().map(|band| (band.band as f64 - x).powi(2)).sum();
     let xy: f64 = bands.iter().map(|band| (band.band as f64 - x) * band.level_db).sum();
     if xx > 0.0 { xy / xx } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Bands of the engine's own law: its octaves under a tip, as levels of a density.
+    #[test]
+    fn the_slope_of_the_ground_is_found_under_a_tip() {
+        for roughness in [0.0, 0.3, 0.6, 1.0] {
+            for tip_radius_m in [0.0, 0.4e-3, 1.6e-3, 3e-3] {
+                let alpha = 2.5 - 1.5 * roughness;
+                let relief = Relief {
+                    rms_at_1mm_m: 10e-6 / growth(roughness),
+                    outer_scale_m: 0.01,
+                    tip_radius_m,
+                    longest_wavelength_m: f64::INFINITY,
+                };
+                let level = |band: usize| {
+                    let wavelength_m = 1.0 / wavenumber(band);
+                    let rms = relief.rms_at_1mm_m
+                        * relief.share(wavelength_m, roughness)
+                        * (wavelength_m / 1e-3).powf(0.5 * (alpha - 1.0));
+                    db(rms * rms * wavelength_m / octave_integral(alpha))
+                };
+                let bands: Vec<Band> =
+                    (17..40).map(|band| Band { band, level_db: level(band), se_db: 0.2 }).collect();
+                let law = PowerLaw::through(&bands, tip_radius_m);
+                println!("R {roughness} tip {tip_radius_m}: {} for {alpha}, {:?}", law.alpha, law);
+            }
+        }
+    }
 }

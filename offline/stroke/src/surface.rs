@@ -31,6 +31,8 @@ pub const PROBE_ERROR: f64 = 0.1;
 /// Surface found in strokes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeSurface {
+    /// Third octaves of the felt height.
+    pub bands: Vec<relief::Band>,
     /// Octaves of the felt height, coarsest first.
     pub octaves: Vec<Octave>,
     /// Standard error that the probe's constants bring to each octave, dB.
@@ -277,6 +279,7 @@ fn solve(
     }
     Ok(StrokeSurface {
         relief: octaves::playing(&spectrum, &law, tip_radius_m),
+        bands: parted.bands,
         octaves,
         probe_se_db,
         law,
