@@ -34,7 +34,8 @@ fn csv(path: &Path, header: &str, rows: impl Iterator<Item = Vec<f64>>) {
 }
 
 fn read(folder: &Path, more: &[&str]) -> Value {
-    let mut arguments = vec!["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "out", "--json"];
+    let mut arguments =
+        vec!["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "out", "--json"];
     arguments.extend(more);
     let (status, out, err) = told(&asperity(folder, &arguments));
     assert_eq!((status, err.as_str()), (0, ""));
@@ -59,7 +60,10 @@ fn a_stroke_with_a_line_becomes_a_surface_that_renders() {
     for file in report["files"].as_array().unwrap() {
         assert!(folder.join("out").join(file.as_str().unwrap()).is_file(), "{file}");
     }
-    assert_eq!(report, serde_json::from_slice::<Value>(&fs::read(folder.join("out/surface.json")).unwrap()).unwrap());
+    assert_eq!(
+        report,
+        serde_json::from_slice::<Value>(&fs::read(folder.join("out/surface.json")).unwrap()).unwrap()
+    );
     let (status, _, err) = told(&asperity(folder, &["render", "out/scene.toml", "-o", "take"]));
     assert_eq!((status, err.as_str()), (0, ""));
 }
@@ -84,7 +88,9 @@ fn a_recording_that_is_no_stroke_is_refused_for_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let good = vibration(3.0, 150.0);
-    let one = |of: &dyn Fn(usize, f64) -> f64| good.iter().enumerate().map(|(i, a)| vec![of(i, *a)]).collect::<Vec<_>>();
+    let one = |of: &dyn Fn(usize, f64) -> f64| {
+        good.iter().enumerate().map(|(i, a)| vec![of(i, *a)]).collect::<Vec<_>>()
+    };
     let refused = |rows: Vec<Vec<f64>>, more: &[&str], parts: &[&str]| {
         csv(&folder.join("stroke.csv"), "a", rows.into_iter());
         let mut arguments = vec!["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "out"];
@@ -98,12 +104,24 @@ fn a_recording_that_is_no_stroke_is_refused_for_its_reason() {
     refused(one(&|_, _| 0.25), &rate, &["every sample is the same"]);
     refused(one(&|i, a| if i == 77 { f64::NAN } else { a }), &rate, &["sample 77"]);
     refused(one(&|_, a| a)[..2000].to_vec(), &rate, &["0.500 s long", "at least 1 s"]);
-    refused(one(&|_, a| a), &["--rate", "100", "--speed", "0.1", "--force", "1"], &["rate", "at least 200 Hz"]);
+    refused(
+        one(&|_, a| a),
+        &["--rate", "100", "--speed", "0.1", "--force", "1"],
+        &["rate", "at least 200 Hz"],
+    );
     refused(one(&|_, a| a), &["--speed", "0.1", "--force", "1"], &["time_s", "--rate"]);
     refused(one(&|_, a| a), &["--rate", "4000", "--force", "1"], &["--speed", "is missing"]);
-    refused(one(&|_, a| a), &["--rate", "4000", "--speed", "v", "--force", "1"], &["no column \"v\"", "its columns: a"]);
+    refused(
+        one(&|_, a| a),
+        &["--rate", "4000", "--speed", "v", "--force", "1"],
+        &["no column \"v\"", "its columns: a"],
+    );
     refused(one(&|_, a| a), &["--rate", "4000", "--speed", "-0.1", "--force", "1"], &["--speed", "above 0"]);
-    refused(one(&|_, a| a), &["--rate", "4000", "--speed", "0.1,0.2", "--force", "1"], &["2 values for 1 files"]);
+    refused(
+        one(&|_, a| a),
+        &["--rate", "4000", "--speed", "0.1,0.2", "--force", "1"],
+        &["2 values for 1 files"],
+    );
     refused(one(&|_, a| 900.0 * a), &rate, &["leaves the ground", "press harder"]);
     fs::write(folder.join("stroke.csv"), "a\n0.1\nhello\n").unwrap();
     let arguments = ["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "out"];
@@ -124,10 +142,13 @@ fn models_of_a_toolkit_are_read_by_their_format() {
              <var>0.01</var><gain>{gain}</gain><speedMod>{v}</speedMod><forceMod>{f}</forceMod></model>"
         )
     };
-    let models = [(60.0, 0.8, 1.0), (60.0, 2.0, 1.3), (120.0, 1.0, 1.8), (200.0, 1.5, 2.8), (200.0, 3.0, 3.4)];
+    let models =
+        [(60.0, 0.8, 1.0), (60.0, 2.0, 1.3), (120.0, 1.0, 1.8), (200.0, 1.5, 2.8), (200.0, 3.0, 3.4)];
     let body: String =
         models.iter().enumerate().map(|(i, (v, f, g))| model(*v, *f, *g, -0.3 - 0.01 * i as f64)).collect();
-    let text = format!("<modelSet><material>felt</material><SpeedUnits>mm/s</SpeedUnits><mu>0.41</mu>{body}</modelSet>");
+    let text = format!(
+        "<modelSet><material>felt</material><SpeedUnits>mm/s</SpeedUnits><mu>0.41</mu>{body}</modelSet>"
+    );
     fs::write(folder.join("models.xml"), text).unwrap();
     let arguments = ["texture", "from-stroke", "models.xml", "--probe", "stylus", "-o", "out", "--json"];
     let (status, out, err) = told(&asperity(folder, &arguments));

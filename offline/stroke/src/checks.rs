@@ -28,7 +28,11 @@ pub fn refuse(stroke: &Stroke) -> Result<(), StrokeError> {
         return refused("recording", "holds no samples".into(), "record 10 s of one stroke");
     }
     if stroke.rate_hz.is_nan() || stroke.rate_hz < LEAST_RATE_HZ {
-        return refused("rate", format!("{} Hz", stroke.rate_hz), "must be at least 200 Hz: touch reaches from 20 to 500 Hz");
+        return refused(
+            "rate",
+            format!("{} Hz", stroke.rate_hz),
+            "must be at least 200 Hz: touch reaches from 20 to 500 Hz",
+        );
     }
     if stroke.seconds() < LEAST_S {
         let what = format!("{:.3} s long", stroke.seconds());
@@ -36,14 +40,22 @@ pub fn refuse(stroke: &Stroke) -> Result<(), StrokeError> {
     }
     for axis in &stroke.axes {
         if axis.len() != stroke.len() {
-            return refused("recording", "its axes differ in length".into(), "every axis must have a value a row");
+            return refused(
+                "recording",
+                "its axes differ in length".into(),
+                "every axis must have a value a row",
+            );
         }
         if let Some(i) = axis.iter().position(|x| !x.is_finite()) {
             return refused("recording", format!("sample {i} is no number"), "must be finite");
         }
         let mean = axis.iter().sum::<f64>() / axis.len() as f64;
         if stroke.axes.len() == 1 && axis.iter().all(|x| (x - mean).abs() <= 1e-12 * mean.abs().max(1e-30)) {
-            return refused("recording", "every sample is the same".into(), "must hold the vibration of a stroke");
+            return refused(
+                "recording",
+                "every sample is the same".into(),
+                "must hold the vibration of a stroke",
+            );
         }
         let clipped = clipped_share(axis);
         if clipped > CLIPPED {
@@ -70,14 +82,19 @@ pub fn refuse(stroke: &Stroke) -> Result<(), StrokeError> {
     }
     let force_n = stroke.force_n.mean(0, stroke.len());
     if force_n < 1e-3 {
-        return refused("force", format!("{force_n} N in the mean"), "must be above 0.001 N; is the column in newtons?");
+        return refused(
+            "force",
+            format!("{force_n} N in the mean"),
+            "must be above 0.001 N; is the column in newtons?",
+        );
     }
     Ok(())
 }
 
 /// Share of samples in flat runs at the extremes.
 fn clipped_share(axis: &[f64]) -> f64 {
-    let (low, high) = axis.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let (low, high) =
+        axis.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
     if high <= low {
         return 0.0;
     }
@@ -140,14 +157,21 @@ pub fn stays_down(lift: f64, tool: &Tool, warnings: &mut Vec<String>) -> Result<
 pub fn stands_over_floor(floor: &Floor, warnings: &mut Vec<String>) -> Result<(), StrokeError> {
     if floor.over_signal_db > BURIED_DB {
         let what = format!("noise floor {:.1} dB beside the stroke's own level", floor.over_signal_db);
-        return Err(StrokeError::new("recording", what, "press harder, stroke faster or mount the sensor closer to the tip"));
+        return Err(StrokeError::new(
+            "recording",
+            what,
+            "press harder, stroke faster or mount the sensor closer to the tip",
+        ));
     }
     if floor.over_signal_db > -10.0 {
         let told = if floor.from_standstill { "at standstill" } else { "judged by the top of the band" };
-        warnings.push(format!("the noise floor ({told}) is {:.0} dB under the stroke", -floor.over_signal_db));
+        warnings
+            .push(format!("the noise floor ({told}) is {:.0} dB under the stroke", -floor.over_signal_db));
     }
     if !floor.from_standstill && floor.over_signal_db > -30.0 {
-        warnings.push("no standstill tells the noise floor: record a second of it (speed column at 0)".to_owned());
+        warnings.push(
+            "no standstill tells the noise floor: record a second of it (speed column at 0)".to_owned(),
+        );
     }
     Ok(())
 }

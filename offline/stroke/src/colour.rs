@@ -49,8 +49,8 @@ const LOOSE_KINK_DB: f64 = 6.0;
 const COLOUR_DB: f64 = 5.0;
 const CORRELATED_OCTAVES: f64 = 0.5;
 const TILT_DB: f64 = 2.0;
-/// Prior of a stroke's level, dB.
-const LEVEL_DB: f64 = 0.3;
+/// Prior of a stroke's level, dB: gain and speed hold from stroke to stroke.
+pub const LEVEL_DB: f64 = 0.3;
 /// Prior of the force's own gain, dB an octave.
 const FORCE_DB: f64 = 1.0;
 /// Greatest over least speed from which colour and ground are told apart.
@@ -58,14 +58,19 @@ pub const LEAST_SPEEDS: f64 = 1.8;
 /// Frequencies of the colour: node i is at 10^(i/10) Hz.
 const NODES: std::ops::Range<usize> = 7..36;
 
-/// Solves for surface and rig; `with_colour` where speeds differ.
+/// Solves for surface and rig; `with_colour` where speeds differ. Levels of strokes differ by
+/// `level_db` for reasons of their own.
 #[must_use]
-pub fn part(levels: &[Level], groups: &[Group], with_colour: bool) -> Parted {
-    let (low, high) = levels
-        .iter()
-        .fold((usize::MAX, 0), |(low, high), level| (low.min(level.band), high.max(level.band)));
+pub fn part(levels: &[Level], groups: &[Group], with_colour: bool, level_db: f64) -> Parted {
+    let (low, high) =
+        levels.iter().fold((usize::MAX, 0), |(low, high), level| (low.min(level.band), high.max(level.band)));
     if levels.is_empty() {
-        return Parted { bands: Vec::new(), colour: Vec::new(), beside_db: Vec::new(), force_db_per_octave: None };
+        return Parted {
+            bands: Vec::new(),
+            colour: Vec::new(),
+            beside_db: Vec::new(),
+            force_db_per_octave: None,
+        };
     }
     let bands = high - low + 1;
     let nodes = if with_colour { NODES.len() } else { 0 };
@@ -103,7 +108,7 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool) -> Parted {
         }
     }
     let data = normal.clone();
-    let kink_db = if with_colour { KINK_DB } else { LOOSE_KINK_DB };
+    let kink_db = if with_colour || level_db > 1.0 { KINK_DB } else { LOOSE_KINK_DB };
     for i in 1..bands.saturating_sub(1) {
         let bend = [(i - 1, 1.0), (i, -2.0), (i + 1, 1.0)];
         for (a, wa) in bend {
@@ -114,7 +119,11 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool) -> Parted {
     }
     if with_colour {
         let prior = colour_prior(nodes);
-        normal.view_mut((bands, bands), (nodes, nodes)).iter_mut().zip(prior.iter()).for_each(|(a, b)| *a += b);
+        normal
+            .view_mut((bands, bands), (nodes, nodes))
+            .iter_mut()
+            .zip(prior.iter())
+            .for_each(|(a, b)| *a += b);
         // The mean of the colour is the surface's level.
         for i in 0..nodes {
             for j in 0..nodes {
@@ -123,7 +132,7 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool) -> Parted {
         }
     }
     for i in 0..level_count {
-        normal[(bands + nodes + i, bands + nodes + i)] += LEVEL_DB.powi(-2);
+        normal[(bands + nodes + i, bands + nodes + i)] += level_db.powi(-2);
     }
     if with_force {
         normal[(unknowns - 1, unknowns - 1)] += FORCE_DB.powi(-2);
@@ -133,7 +142,12 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool) -> Parted {
         normal[(i, i)] += 1e-9;
     }
     let Some(inverse) = normal.clone().try_inverse() else {
-        return Parted { bands: Vec::new(), colour: Vec::new(), beside_db: Vec::new(), force_db_per_octave: None };
+        return Parted {
+            bands: Vec::new(),
+            colour: Vec::new(),
+            beside_db: Vec::new(),
+            force_db_per_octave: None,
+        };
     };
     let solved = &inverse * right;
     let seen = |i: usize| data[(i, i)] > 0.0;

@@ -41,11 +41,8 @@ pub fn find(windows: &[Window]) -> Floor {
     };
     let signal = mean(&moving);
     let from_standstill = still.len() >= 2;
-    let density = if from_standstill {
-        smooth(&mean(&still))
-    } else {
-        vec![white(&signal, bin_hz, &moving); bins]
-    };
+    let density =
+        if from_standstill { smooth(&mean(&still)) } else { vec![white(&signal, bin_hz, &moving); bins] };
     let band = (20.0 / bin_hz) as usize..((1000.0 / bin_hz) as usize).min(bins);
     let power = |density: &[f64]| density[band.clone()].iter().sum::<f64>();
     let over_signal_db = db(power(&density)) - db(power(&signal));
@@ -99,9 +96,9 @@ fn white(signal: &[f64], bin_hz: f64, moving: &[&Window]) -> f64 {
     };
     let none = misfit(0.0);
     let tried = (1..STEPS).map(|step| least * 10f64.powf(-0.1 * STEP_DB * step as f64));
-    let best = tried.map(|floor| (misfit(floor), floor)).fold((none - 2.0, 0.0), |best, now| {
-        if now.0 < best.0 { now } else { best }
-    });
+    let best = tried
+        .map(|floor| (misfit(floor), floor))
+        .fold((none - 2.0, 0.0), |best, now| if now.0 < best.0 { now } else { best });
     best.1
 }
 

@@ -53,7 +53,7 @@ const FOLLOWED: [f64; 3] = [0.25, 0.12, 0.08];
 /// Cutoff to which the followed phase is smoothed, Hz.
 const WANDER_HZ: f64 = 6.0;
 /// Hump over its third octave that is no chance, dB.
-const SMEARED_DB: f64 = -6.0;
+const SMEARED_DB: f64 = -5.0;
 /// Line over its third octave from which its phase is trusted, dB.
 const TRUSTED_DB: f64 = 0.0;
 /// Lines that are told.
@@ -91,13 +91,18 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
         return found;
     }
     let Some(hump) = hump(&profile) else { return found };
-    let steady = found.lines.len() == 1 || found.lines.first().is_some_and(|line| line.over_relief_db > hump.over_db - 1.0);
+    let steady = found.lines.len() == 1
+        || found.lines.first().is_some_and(|line| line.over_relief_db > hump.over_db - 1.0);
     if steady && !hump.is_wide {
         return found;
     }
     if hump.over_db < TRUSTED_DB {
         // Smeared, and too weak to follow.
-        return Lines { lines: Vec::new(), wander: 0.0, is_smeared: hump.is_wide && hump.over_db > SMEARED_DB };
+        return Lines {
+            lines: Vec::new(),
+            wander: 0.0,
+            is_smeared: hump.is_wide && hump.over_db > SMEARED_DB,
+        };
     }
     let (followed, wander, period_m) = follow(height, &path, stroke, hump.period_m);
     let lines = peaks(&followed);
@@ -153,7 +158,9 @@ fn at_places(height_m: &[f64], path_m: &[f64], stroke: &Stroke) -> Profile {
             let span = (path_m[after] - path_m[before]).max(1e-30);
             let t = ((x - path_m[before]) / span).clamp(0.0, 1.0);
             let (p0, p1, p2, p3) = (at(before.saturating_sub(1)), at(before), at(after), at(after + 1));
-            p1 + 0.5 * t * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
+            p1 + 0.5
+                * t
+                * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
         })
         .collect();
     Profile { height_m: heights, step_m, mean_speed_m_s: total_m / stroke.seconds(), rate_hz: stroke.rate_hz }
@@ -311,7 +318,7 @@ fn hump(profile: &Profile) -> Option<Hump> {
         // Chance: so many independent bins make the mean.
         let bins = (2.0 * inner as f64 * independent).max(1.0);
         let score = (own / about.max(f64::MIN_POSITIVE)).ln() * bins.sqrt();
-        if best.is_none_or(|(least, _)| score > least) && score > 5.0 {
+        if best.is_none_or(|(least, _)| score > least) && score > 7.0 {
             best = Some((score, at));
         }
         at += (inner / 4).max(1);

@@ -25,6 +25,8 @@ pub struct Models {
 
 /// Distance of two bins, Hz.
 const BIN_HZ: f64 = 1.0;
+/// Deviation of a model's level from what its neighbours say, dB: speed and force of a hand wander.
+pub const LEVEL_DB: f64 = 2.7;
 /// Time that a model stands for, s: one level of it errs by 1.6 dB in a third octave.
 const STANDS_FOR_S: f64 = 0.6;
 
@@ -47,7 +49,8 @@ pub fn read(text: &str) -> Result<Models, StrokeError> {
         Some("m/s") => 1.0,
         Some(other) => return Err(refused(format!("SpeedUnits {other:?}"), "must be mm/s or m/s")),
     };
-    if let Some(units) = word(root, "AccelUnits").filter(|units| !matches!(units.as_str(), "m/s^2" | "m/s2")) {
+    if let Some(units) = word(root, "AccelUnits").filter(|units| !matches!(units.as_str(), "m/s^2" | "m/s2"))
+    {
         return Err(refused(format!("AccelUnits {units:?}"), "must be m/s^2"));
     }
     let rate_hz = number(root, "SampleRate").unwrap_or(1000.0);
@@ -62,11 +65,13 @@ pub fn read(text: &str) -> Result<Models, StrokeError> {
     let mut known: Vec<Vec<f64>> = Vec::new();
     let mut windows = Vec::new();
     for (index, model) in root.children().filter(|child| child.has_tag_name("model")).enumerate() {
-        let missing = |name: &str| refused(format!("model {} has no {name}", index + 1), "must be an AR or ARMA model");
+        let missing =
+            |name: &str| refused(format!("model {} has no {name}", index + 1), "must be an AR or ARMA model");
         let ar = coefficients(model, "ARcoeff").ok_or_else(|| missing("ARcoeff"))?;
         let ma = coefficients(model, "MAcoeff").unwrap_or_else(|| vec![1.0]);
         let variance = number(model, "var").ok_or_else(|| missing("var"))?;
-        let gain = number(model, "gain").filter(|_| model.children().any(|child| child.has_tag_name("MAcoeff")));
+        let gain =
+            number(model, "gain").filter(|_| model.children().any(|child| child.has_tag_name("MAcoeff")));
         let speed_m_s = factor * number(model, "speedMod").ok_or_else(|| missing("speedMod"))?;
         let force_n = number(model, "forceMod").ok_or_else(|| missing("forceMod"))?;
         if speed_m_s <= 0.0 || force_n <= 0.0 || variance <= 0.0 || known.contains(&ar) {
@@ -95,7 +100,10 @@ pub fn read(text: &str) -> Result<Models, StrokeError> {
         });
     }
     if windows.is_empty() {
-        return Err(refused("no model of a moving, pressed probe".into(), "must hold `model` with ARcoeff, var, speedMod, forceMod"));
+        return Err(refused(
+            "no model of a moving, pressed probe".into(),
+            "must hold `model` with ARcoeff, var, speedMod, forceMod",
+        ));
     }
     Ok(Models { material: word(root, "material"), friction: number(root, "mu"), windows })
 }

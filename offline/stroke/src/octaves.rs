@@ -6,11 +6,15 @@
 //! was felt.
 
 use crate::relief::{PowerLaw, Spectrum, wavenumber};
-use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights, Relief, growth};
+use asperity_dsp::fractal_noise::{
+    FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights, Relief, growth,
+};
 use asperity_dsp::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
 use std::f64::consts::PI;
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Micro-relief of a surface as a scene file says it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +43,7 @@ const STEPS_A_CELL: f64 = 16.0;
 /// Rounds of the fit, each of which multiplies gains.
 const ROUNDS: usize = 300;
 /// Third octaves of the target: 31 mm to 20 µm.
-const FITTED: std::ops::Range<usize> = 15..47;
+const FITTED: Range<usize> = 15..47;
 
 /// Octaves that come to the spectrum under a tip.
 #[must_use]
@@ -53,7 +57,8 @@ pub fn playing(spectrum: &Spectrum<'_>, law: &PowerLaw, tip_radius_m: f64) -> Mi
         longest_wavelength_m: f64::INFINITY,
     });
     let field = FractalNoise::new(61);
-    let own: Vec<Vec<f64>> = (0..OCTAVES).map(|octave| octave_spectrum(&field, &weights, roughness, octave)).collect();
+    let own: Vec<Vec<f64>> =
+        (0..OCTAVES).map(|octave| octave_spectrum(&field, &weights, roughness, octave, FITTED)).collect();
     let target: Vec<f64> = FITTED.map(|band| 10f64.powf(0.1 * spectrum.at(band as f64))).collect();
     let mut gains = [1.0f64; OCTAVES];
     for _ in 0..ROUNDS {
@@ -67,14 +72,59 @@ pub fn playing(spectrum: &Spectrum<'_>, law: &PowerLaw, tip_radius_m: f64) -> Mi
                 sum += share * (target[k] / model[k]).ln();
                 whole += share;
             }
-            *gain = (*gain * (sum / whole).exp()).clamp(10f64.powf(-0.1 * MOST_DB), 10f64.powf(0.1 * MOST_DB));
+            *gain =
+                (*gain * (sum / whole).exp()).clamp(10f64.powf(-0.1 * MOST_DB), 10f64.powf(0.1 * MOST_DB));
         }
     }
-    MicroRelief { roughness, micro_relief_m, octaves_db: gains.map(|gain| crate::db(gain).clamp(-MOST_DB, MOST_DB)) }
+    MicroRelief {
+        roughness,
+        micro_relief_m,
+        octaves_db: gains.map(|gain| crate::db(gain).clamp(-MOST_DB, MOST_DB)),
+    }
 }
 
-/// Density of one octave of the noise at the third octaves of [`FITTED`], m³.
-fn octave_spectrum(field: &FractalNoise, weights: &OctaveWeights, roughness: f64, octave: usize) -> Vec<f64> {
+/// Spectrum of one octave of the noise along a line, over its rms squared times its wavelength, by
+/// third octaves of q λ; [`kernel_origin`] is the place of 1.
+#[must_use]
+pub fn octave_kernel() -> &'static [f64] {
+    static KERNEL: OnceLock<Vec<f64>> = OnceLock::new();
+    KERNEL.get_or_init(|| {
+        const ROUGHNESS: f64 = 0.5;
+        let law = Relief {
+            rms_at_1mm_m: 1e-6,
+            outer_scale_m: f64::INFINITY,
+            tip_radius_m: 0.0,
+            longest_wavelength_m: f64::INFINITY,
+        };
+        let field = FractalNoise::new(61);
+        let density =
+            octave_spectrum(&field, &OctaveWeights::new(&law), ROUGHNESS, KERNEL_OCTAVE, KERNEL_BANDS);
+        let wave_m = wavelength_m(KERNEL_OCTAVE);
+        let rms_m = law.rms_at_1mm_m
+            * law.share(wave_m, ROUGHNESS)
+            * (wave_m / 1e-3).powf(0.5 * (FractalNoise::alpha(ROUGHNESS) - 1.0));
+        density.iter().map(|density| density / (rms_m * rms_m * wave_m)).collect()
+    })
+}
+
+/// Place in the kernel where the wavelength is the octave's own.
+#[must_use]
+pub fn kernel_origin() -> f64 {
+    -10.0 * wavelength_m(KERNEL_OCTAVE).log10() - KERNEL_BANDS.start as f64
+}
+
+/// Octave that the kernel is read from, and third octaves about it.
+const KERNEL_OCTAVE: usize = 5;
+const KERNEL_BANDS: Range<usize> = 5..46;
+
+/// Density of one octave of the noise at third octaves of wavenumbers, m³.
+pub(crate) fn octave_spectrum(
+    field: &FractalNoise,
+    weights: &OctaveWeights,
+    roughness: f64,
+    octave: usize,
+    bands: Range<usize>,
+) -> Vec<f64> {
     let mut alone = [f64::NEG_INFINITY; OCTAVES];
     alone[octave] = 0.0;
     let weights = weights.with_gains_db(&alone);
@@ -90,7 +140,12 @@ fn octave_spectrum(field: &FractalNoise, weights: &OctaveWeights, roughness: f64
         let footprint_m = vec![step_m; LENGTH];
         let mut height_m = vec![0.0; LENGTH];
         let roughness = vec![roughness; LENGTH];
-        field.add(&NoisePath { position_m: &position_m, footprint_m: &footprint_m }, &roughness, &weights, &mut height_m);
+        field.add(
+            &NoisePath { position_m: &position_m, footprint_m: &footprint_m },
+            &roughness,
+            &weights,
+            &mut height_m,
+        );
         let mut bins: Vec<Complex<f64>> = height_m
             .iter()
             .enumerate()
@@ -101,7 +156,7 @@ fn octave_spectrum(field: &FractalNoise, weights: &OctaveWeights, roughness: f64
         density.iter_mut().zip(&bins).for_each(|(sum, bin)| *sum += scale * bin.norm_sqr());
     }
     let bin_q = 1.0 / (LENGTH as f64 * step_m);
-    FITTED
+    bands
         .map(|band| {
             let (from, to) = (wavenumber(band) * 10f64.powf(-0.05), wavenumber(band) * 10f64.powf(0.05));
             let (from, to) = ((from / bin_q) as usize, (to / bin_q) as usize + 1);

@@ -9,8 +9,9 @@
 
 use crate::db;
 use crate::floor::Floor;
+use crate::octaves::{kernel_origin, octave_kernel, wavelength_m};
 use crate::recording::{STANDSTILL_M_S, Window};
-use asperity_dsp::fractal_noise::{Relief, growth};
+use asperity_dsp::fractal_noise::{OCTAVES, Relief, growth};
 
 /// Third octaves of wavenumbers: centre i is at 10^(i/10) 1/m.
 pub const BANDS: usize = 60;
@@ -18,6 +19,8 @@ pub const BANDS: usize = 60;
 const FINEST_Q: f64 = 5e4;
 /// Slope that the first pass takes for the spectrum's.
 const FIRST_SLOPE: f64 = 2.5;
+/// Shortest time of a group, s.
+const LEAST_S: f64 = 0.5;
 /// Power over the floor below which a band does not count.
 const LEAST_OVER_FLOOR: f64 = 0.25;
 /// Error of every level that no longer recording takes away, dB.
@@ -72,7 +75,13 @@ pub fn groups(windows: &[Window]) -> Vec<Group> {
             (2.0 * window.force_n.log2()).round() as i64,
         );
         let place = all.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
-            let none = Group { stroke: window.stroke, speed_m_s: 0.0, force_n: 0.0, seconds: 0.0, members: Vec::new() };
+            let none = Group {
+                stroke: window.stroke,
+                speed_m_s: 0.0,
+                force_n: 0.0,
+                seconds: 0.0,
+                members: Vec::new(),
+            };
             all.push((key, none));
             all.len() - 1
         });
@@ -82,7 +91,7 @@ pub fn groups(windows: &[Window]) -> Vec<Group> {
         group.seconds += window.stands_for_s;
         group.members.push(i);
     }
-    all.retain(|(_, group)| group.members.len() >= 2);
+    all.retain(|(_, group)| group.seconds >= LEAST_S);
     all.into_iter()
         .map(|(_, group)| {
             let count = group.members.len() as f64;
@@ -113,7 +122,8 @@ pub fn levels(
             for (band, sum) in sums.iter_mut().enumerate() {
                 let centre = wavenumber(band);
                 let (from_hz, to_hz) = (centre * v / edge, centre * v * edge);
-                if from_hz < low_hz || to_hz > high_hz.min(0.45 * window.rate_hz) || centre * edge > FINEST_Q {
+                if from_hz < low_hz || to_hz > high_hz.min(0.45 * window.rate_hz) || centre * edge > FINEST_Q
+                {
                     continue;
                 }
                 let from = (from_hz / window.bin_hz).ceil() as usize;
@@ -214,16 +224,43 @@ impl PowerLaw {
         relief.share(wavelength_m, roughness) / growth(roughness)
     }
 
+    /// Density of the felt height under a tip, m³: the engine's octaves, each as broad as its noise
+    /// is.
+    fn density_under(&self, q: f64, tip_radius_m: f64) -> f64 {
+        let kernel = octave_kernel();
+        let mut density = 0.0;
+        for octave in 0..OCTAVES {
+            let wavelength_m = wavelength_m(octave);
+            let place = 10.0 * (q * wavelength_m).log10() + kernel_origin();
+            let below = place.floor();
+            if below < 0.0 || below as usize + 1 >= kernel.len() {
+                continue;
+            }
+            let (a, b) = (kernel[below as usize].max(1e-12), kernel[below as usize + 1].max(1e-12));
+            let shape = a * (b / a).powf(place - below);
+            let beyond = wavelength_m / self.outer_scale_m;
+            let flat = if self.is_gradual { (1.0 + beyond * beyond).sqrt() } else { beyond.max(1.0) };
+            let rms_m = self.at_1mm_m
+                * (wavelength_m / PINNED_M).powf(0.5 * (self.alpha - 1.0))
+                * flat.powf(-0.5 * self.alpha)
+                * self.followed(wavelength_m, tip_radius_m);
+            density += rms_m * rms_m * wavelength_m * shape;
+        }
+        density
+    }
+
     /// Density of the felt height in a third octave, dB re 1 m³.
     #[must_use]
     pub fn level_db(&self, band: usize, tip_radius_m: f64) -> f64 {
         let q = wavenumber(band);
         let knee = 1.0 / self.outer_scale_m;
-        let flat = if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
+        let flat = |q: f64| if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
         // Rms of an octave about 1 mm: ∫ S dq from q/√2 to q√2.
         let octave = octave_integral(self.alpha) / PINNED_M;
-        db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat * PINNED_M).log10()
-            + 2.0 * db(self.followed(1.0 / q, tip_radius_m))
+        if tip_radius_m > 0.0 {
+            return db(self.density_under(q, tip_radius_m));
+        }
+        db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat(q) * PINNED_M).log10()
     }
 
     /// Law through the bands, and what a tip of this radius leaves of it.
@@ -403,30 +440,40 @@ fn end_slope(bands: &[Band]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::octaves::octave_spectrum;
+    use asperity_dsp::fractal_noise::{FractalNoise, OctaveWeights};
 
-    // Bands of the engine's own law: its octaves under a tip, as levels of a density.
+    // The engine's own noise, its octaves weighed for a tip.
     #[test]
     fn the_slope_of_the_ground_is_found_under_a_tip() {
+        let field = FractalNoise::new(5);
         for roughness in [0.0, 0.3, 0.6, 1.0] {
             for tip_radius_m in [0.0, 0.4e-3, 1.6e-3, 3e-3] {
-                let alpha = 2.5 - 1.5 * roughness;
-                let relief = Relief {
+                let alpha = FractalNoise::alpha(roughness);
+                let weights = OctaveWeights::new(&Relief {
                     rms_at_1mm_m: 10e-6 / growth(roughness),
                     outer_scale_m: 0.01,
                     tip_radius_m,
                     longest_wavelength_m: f64::INFINITY,
-                };
-                let level = |band: usize| {
-                    let wavelength_m = 1.0 / wavenumber(band);
-                    let rms = relief.rms_at_1mm_m
-                        * relief.share(wavelength_m, roughness)
-                        * (wavelength_m / 1e-3).powf(0.5 * (alpha - 1.0));
-                    db(rms * rms * wavelength_m / octave_integral(alpha))
-                };
-                let bands: Vec<Band> =
-                    (17..40).map(|band| Band { band, level_db: level(band), se_db: 0.2 }).collect();
+                });
+                let spectra: Vec<Vec<f64>> =
+                    (0..OCTAVES).map(|i| octave_spectrum(&field, &weights, roughness, i, 17..42)).collect();
+                let bands: Vec<Band> = (17..42)
+                    .map(|band| {
+                        let sum = spectra.iter().map(|spectrum| spectrum[band - 17]).sum();
+                        Band { band, level_db: db(sum), se_db: 0.2 }
+                    })
+                    .collect();
                 let law = PowerLaw::through(&bands, tip_radius_m);
-                println!("R {roughness} tip {tip_radius_m}: {} for {alpha}, {:?}", law.alpha, law);
+                // What a tip leaves of the octaves hides their slope, and the engine's weights are
+                // polynomials of R within half a decibel.
+                let bound = if tip_radius_m > 0.0 { 0.25 } else { 0.1 };
+                let beside = law.alpha - alpha;
+                assert!(
+                    beside.abs() < bound,
+                    "R {roughness}, tip {tip_radius_m} m: {} for {alpha}",
+                    law.alpha
+                );
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::colour::{self, Colour, LEAST_SPEEDS};
 use crate::db;
 use crate::floor::{self, Floor};
 use crate::lines::{self, Line};
-use crate::models::Models;
+use crate::models::{self, Models};
 use crate::octaves::{self, MicroRelief};
 use crate::recording::{Stroke, Window, respond, windows};
 use crate::relief::{self, Group, Octave, PowerLaw, Spectrum};
@@ -69,6 +69,8 @@ pub struct StrokeSurface {
 const WINDOW_S: [f64; 2] = [0.4, 1.5];
 /// Deviation of a measured speed from which windows are short, a share.
 const STEADY: f64 = 0.03;
+/// Band that published models hold, Hz.
+const MODELS_HZ: (f64, f64) = (17.0, 450.0);
 /// Highest frequency that is read, Hz.
 const HIGH_HZ: f64 = 3000.0;
 /// Agreement of two lines' periods, a share.
@@ -105,7 +107,8 @@ pub fn fit(
     let found: Vec<lines::Lines> = strokes.iter().map(|stroke| lines::find(stroke, &options.tool)).collect();
     let (common, wander) = common_lines(strokes, &found, &mut warnings);
     let friction = tangential_n.and_then(|force| friction(strokes, force, &mut warnings));
-    let mut surface = solve(&all, &floors, options, (low_hz, HIGH_HZ), &common, warnings)?;
+    let mut surface =
+        solve((&all, &floors), options, (low_hz, HIGH_HZ), &common, colour::LEVEL_DB, warnings)?;
     surface.wander = wander;
     surface.friction = friction;
     Ok(surface)
@@ -115,18 +118,18 @@ pub fn fit(
 ///
 /// # Errors
 /// When they leave no level.
-pub fn fit_models(models: &Models, options: &Options) -> Result<StrokeSurface, StrokeError> {
+pub fn fit_models(read: &Models, options: &Options) -> Result<StrokeSurface, StrokeError> {
     let none = |window: &Window| Floor {
         density: vec![0.0; window.density.len()],
         from_standstill: true,
         over_signal_db: f64::NEG_INFINITY,
     };
-    let floors: Vec<Floor> = models.windows.iter().map(none).collect();
-    let mut windows = models.windows.clone();
+    let floors: Vec<Floor> = read.windows.iter().map(none).collect();
+    let mut windows = read.windows.clone();
     respond(&mut windows, &options.tool);
     let warnings = vec!["models of a few poles hold no lines: octaves only".to_owned()];
-    let mut surface = solve(&windows, &floors, options, (17.0, 450.0), &[], warnings)?;
-    surface.friction = models.friction;
+    let mut surface = solve((&windows, &floors), options, MODELS_HZ, &[], models::LEVEL_DB, warnings)?;
+    surface.friction = read.friction;
     Ok(surface)
 }
 
@@ -135,8 +138,8 @@ fn is_steady(stroke: &Stroke) -> bool {
         return true;
     }
     let mean = stroke.speed_m_s.mean(0, stroke.len());
-    let square =
-        (0..stroke.len()).map(|i| (stroke.speed_m_s.at(i) / mean - 1.0).powi(2)).sum::<f64>() / stroke.len() as f64;
+    let square = (0..stroke.len()).map(|i| (stroke.speed_m_s.at(i) / mean - 1.0).powi(2)).sum::<f64>()
+        / stroke.len() as f64;
     square.sqrt() < STEADY
 }
 
@@ -151,7 +154,8 @@ fn common_lines(strokes: &[Stroke], found: &[lines::Lines], warnings: &mut Vec<S
     let [first, others @ ..] = found else { return (Vec::new(), wander) };
     let speed = |stroke: &Stroke| stroke.speed_m_s.mean(0, stroke.len());
     let speeds: Vec<f64> = strokes.iter().map(speed).collect();
-    let range = speeds.iter().copied().fold(0.0, f64::max) / speeds.iter().copied().fold(f64::INFINITY, f64::min);
+    let range =
+        speeds.iter().copied().fold(0.0, f64::max) / speeds.iter().copied().fold(f64::INFINITY, f64::min);
     if others.is_empty() || range < 1.2 {
         if let Some(line) = first.lines.first().filter(|_| !strokes[0].speed_m_s.is_measured()) {
             let hz = speeds[0] / line.period_m;
@@ -168,8 +172,10 @@ fn common_lines(strokes: &[Stroke], found: &[lines::Lines], warnings: &mut Vec<S
         .iter()
         .filter(|line| others.iter().all(|lines| lines.lines.iter().any(|other| same(line, other))))
         .map(|line| {
-            let all: Vec<Line> =
-                found.iter().filter_map(|lines| lines.lines.iter().find(|other| same(line, other)).copied()).collect();
+            let all: Vec<Line> = found
+                .iter()
+                .filter_map(|lines| lines.lines.iter().find(|other| same(line, other)).copied())
+                .collect();
             let count = all.len() as f64;
             Line {
                 period_m: all.iter().map(|line| line.period_m).sum::<f64>() / count,
@@ -181,11 +187,13 @@ fn common_lines(strokes: &[Stroke], found: &[lines::Lines], warnings: &mut Vec<S
         .collect();
     for (i, line) in first.lines.iter().enumerate().take(3) {
         let hz = speeds[0] / line.period_m;
-        let fixed = others.iter().zip(&speeds[1..]).all(|(lines, v)| {
-            lines.lines.iter().any(|other| (v / other.period_m / hz - 1.0).abs() < 0.02)
-        });
+        let fixed = others
+            .iter()
+            .zip(&speeds[1..])
+            .all(|(lines, v)| lines.lines.iter().any(|other| (v / other.period_m / hz - 1.0).abs() < 0.02));
         if fixed && !common.iter().any(|known| same(known, line)) && i < 3 {
-            warnings.push(format!("{hz:.0} Hz stays at every speed: a resonance of the tool, not of the ground"));
+            warnings
+                .push(format!("{hz:.0} Hz stays at every speed: a resonance of the tool, not of the ground"));
         }
     }
     (common, wander)
@@ -210,11 +218,11 @@ fn friction(strokes: &[Stroke], tangential_n: &[f64], warnings: &mut Vec<String>
 }
 
 fn solve(
-    all: &[Window],
-    floors: &[Floor],
+    (all, floors): (&[Window], &[Floor]),
     options: &Options,
     band_hz: (f64, f64),
     lines: &[Line],
+    level_db: f64,
     mut warnings: Vec<String>,
 ) -> Result<StrokeSurface, StrokeError> {
     let tool = &options.tool;
@@ -223,19 +231,21 @@ fn solve(
     checks::stays_down(lift, tool, &mut warnings)?;
     let colour_db = |hz: f64| options.colour.as_deref().map_or(0.0, |table| interpolated(table, hz));
     let several = colour::speed_range(&groups) >= LEAST_SPEEDS;
-    let with_colour = options.colour.is_none() && several;
+    // Levels that wander by decibels tell no tilt of a rig.
+    let with_colour = options.colour.is_none() && several && level_db < 1.0;
     if !several && options.colour.is_none() {
         warnings.push(
             "one speed: the rig's own colour counts as ground; strokes at a second speed, twice as fast, tell them apart".to_owned(),
         );
     }
-    let lines_q: Vec<(f64, f64)> = lines.iter().map(|line| (1.0 / line.period_m, 0.003 / line.period_m)).collect();
+    let lines_q: Vec<(f64, f64)> =
+        lines.iter().map(|line| (1.0 / line.period_m, 0.003 / line.period_m)).collect();
     let mut slopes = Vec::new();
     let (mut levels, mut parted);
     let mut round = 0;
     loop {
         levels = relief::levels((all, &groups), floors, band_hz, &lines_q, &slopes, &colour_db);
-        parted = colour::part(&levels, &groups, with_colour);
+        parted = colour::part(&levels, &groups, with_colour, level_db);
         slopes = relief::slopes(&parted.bands);
         round += 1;
         if round == 3 {
@@ -252,13 +262,14 @@ fn solve(
     let tip_radius_m = tool.probe.tip_radius_m;
     let law = PowerLaw::through(&parted.bands, tip_radius_m);
     let spectrum = Spectrum::new(&parted.bands);
-    let octaves: Vec<Octave> = (0..OCTAVES)
-        .map(|octave| spectrum.octave(octaves::wavelength_m(octave)))
-        .collect();
+    let octaves: Vec<Octave> =
+        (0..OCTAVES).map(|octave| spectrum.octave(octaves::wavelength_m(octave))).collect();
     let middle = &groups[0];
     let probe_se_db = octaves
         .iter()
-        .map(|octave| tool.uncertainty_db(middle.speed_m_s / octave.wavelength_m, middle.force_n, options.probe_error))
+        .map(|octave| {
+            tool.uncertainty_db(middle.speed_m_s / octave.wavelength_m, middle.force_n, options.probe_error)
+        })
         .collect();
     let recorded: Vec<(usize, f64, f64, f64)> = levels
         .iter()

@@ -86,7 +86,13 @@ impl Tool {
 
     /// Power of the recorded quantity over that of the felt height, at bins `bin_hz` apart.
     #[must_use]
-    pub fn power(&self, bins: usize, bin_hz: f64, (speed_m_s, force_n): (f64, f64), rate_hz: f64) -> Vec<f64> {
+    pub fn power(
+        &self,
+        bins: usize,
+        bin_hz: f64,
+        (speed_m_s, force_n): (f64, f64),
+        rate_hz: f64,
+    ) -> Vec<f64> {
         let mut power: Vec<f64> =
             (0..bins).map(|i| self.responses(i as f64 * bin_hz, force_n)[0].norm_sqr()).collect();
         if self.probe.ridge_m > 0.0 && self.quantity == Quantity::Acceleration {

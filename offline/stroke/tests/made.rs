@@ -116,7 +116,13 @@ pub fn make(made: &Made) -> Stroke {
         })
         .collect();
     let mut at = 0.0;
-    let path: Vec<f64> = speed.iter().map(|v| { at += v / RATE_HZ; at }).collect();
+    let path: Vec<f64> = speed
+        .iter()
+        .map(|v| {
+            at += v / RATE_HZ;
+            at
+        })
+        .collect();
     let step = 0.5 * made.speed_m_s / RATE_HZ;
     let length = ((1.05 * at / step) as usize).next_power_of_two();
     let mut bins = vec![Complex::default(); length];
@@ -134,8 +140,17 @@ pub fn make(made: &Made) -> Stroke {
         let i = (x / step) as usize;
         let t = x / step - i as f64;
         let p = |k: usize| bins[(i + k + length - 1) % length].re;
-        let own = p(1) + 0.5 * t * (p(2) - p(0) + t * (2.0 * p(0) - 5.0 * p(1) + 4.0 * p(2) - p(3) + t * (3.0 * (p(1) - p(2)) + p(3) - p(0))));
-        own + made.lines.iter().map(|(period, amplitude)| amplitude * (2.0 * PI * x / period).sin()).sum::<f64>()
+        let own = p(1)
+            + 0.5
+                * t
+                * (p(2) - p(0)
+                    + t * (2.0 * p(0) - 5.0 * p(1) + 4.0 * p(2) - p(3)
+                        + t * (3.0 * (p(1) - p(2)) + p(3) - p(0))));
+        own + made
+            .lines
+            .iter()
+            .map(|(period, amplitude)| amplitude * (2.0 * PI * x / period).sin())
+            .sum::<f64>()
     };
     let mut signal: Vec<f64> = path.iter().map(|x| height(*x)).collect();
     filtered(&mut signal, |hz| response(&stylus(), made.force_n, hz));
@@ -145,7 +160,11 @@ pub fn make(made: &Made) -> Stroke {
     // Noise is white up to the rate's half; the told ratio is within 20 Hz to 1 kHz.
     let noise = rms * 10f64.powf(-0.05 * made.snr_db) * (0.5 * RATE_HZ / 980.0).sqrt();
     signal.iter_mut().for_each(|x| *x += noise * rng.normal());
-    let speed_m_s = if made.ripple > 0.0 && made.told_ripple { Track::Samples(speed) } else { Track::Constant(made.speed_m_s) };
+    let speed_m_s = if made.ripple > 0.0 && made.told_ripple {
+        Track::Samples(speed)
+    } else {
+        Track::Constant(made.speed_m_s)
+    };
     Stroke { axes: vec![signal], rate_hz: RATE_HZ, speed_m_s, force_n: Track::Constant(made.force_n) }
 }
 

@@ -1,6 +1,6 @@
 //! Strokes made with known ground, read back.
 
-mod made;
 mod colour;
-mod octaves;
 mod lines;
+mod made;
+mod octaves;

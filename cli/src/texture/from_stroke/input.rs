@@ -40,8 +40,9 @@ pub(super) fn probe(name: &str) -> Result<NamedProbe, CliError> {
     let path = Path::new(name);
     let table = if path.extension().is_some_and(|end| end == "toml") {
         let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
-        let table: toml::Table =
-            text.parse().map_err(|error: toml::de::Error| CliError::file(path, error.message(), "must be TOML"))?;
+        let table: toml::Table = text
+            .parse()
+            .map_err(|error: toml::de::Error| CliError::file(path, error.message(), "must be TOML"))?;
         match table.get("probe") {
             Some(toml::Value::Table(probe)) => probe.clone(),
             _ => table,
@@ -56,7 +57,11 @@ pub(super) fn probe(name: &str) -> Result<NamedProbe, CliError> {
 /// Recorded quantity: sound where a ring is given.
 pub(super) fn quantity(options: &Options) -> Result<Quantity, CliError> {
     let Some(path) = &options.ring else {
-        return Ok(if options.unit == Some(Unit::Um) { Quantity::Displacement } else { Quantity::Acceleration });
+        return Ok(if options.unit == Some(Unit::Um) {
+            Quantity::Displacement
+        } else {
+            Quantity::Acceleration
+        });
     };
     let modes = if path.extension().is_some_and(|end| end == "json") {
         let model = ModalModel::load(path).map_err(CliError::from_error)?;
@@ -72,8 +77,10 @@ pub(super) fn quantity(options: &Options) -> Result<Quantity, CliError> {
             })
             .collect()
     } else {
-        let recording = asperity_fit::load(path, asperity_fit::ChannelChoice::default()).map_err(CliError::from_error)?;
-        let fit = asperity_fit::fit(&recording, &asperity_fit::FitOptions::default(), &mut |_| ()).map_err(CliError::from_error)?;
+        let recording =
+            asperity_fit::load(path, asperity_fit::ChannelChoice::default()).map_err(CliError::from_error)?;
+        let fit = asperity_fit::fit(&recording, &asperity_fit::FitOptions::default(), &mut |_| ())
+            .map_err(CliError::from_error)?;
         fit.modes
             .iter()
             .map(|mode| RingMode {
@@ -93,7 +100,11 @@ pub(super) fn colour(path: &Path) -> Result<Vec<(f64, f64)>, CliError> {
     let (hz, db) = (table.column("frequency_hz")?, table.column("gain_db")?);
     let rows: Vec<(f64, f64)> = hz.iter().copied().zip(db.iter().copied()).collect();
     if rows.is_empty() || rows.windows(2).any(|pair| pair[0].0 >= pair[1].0) || rows[0].0 <= 0.0 {
-        return Err(CliError::file(path, "frequency_hz does not rise from above 0", "write one row a third octave, rising"));
+        return Err(CliError::file(
+            path,
+            "frequency_hz does not rise from above 0",
+            "write one row a third octave, rising",
+        ));
     }
     Ok(rows)
 }
@@ -103,10 +114,14 @@ pub(super) fn strokes(options: &Options) -> Result<Recorded, CliError> {
     let mut recorded = Recorded { strokes: Vec::new(), tangential_n: None };
     let mut files = Vec::new();
     for path in &options.strokes {
-        let is_table = path.extension().is_some_and(|end| {
-            ["csv", "tsv", "txt"].iter().any(|known| end.eq_ignore_ascii_case(known))
+        let is_table = path
+            .extension()
+            .is_some_and(|end| ["csv", "tsv", "txt"].iter().any(|known| end.eq_ignore_ascii_case(known)));
+        files.push(if is_table {
+            File::Table(path, Columns::read(path)?)
+        } else {
+            File::Sound(path, sound(path)?)
         });
-        files.push(if is_table { File::Table(path, Columns::read(path)?) } else { File::Sound(path, sound(path)?) });
     }
     for (index, file) in files.iter().enumerate() {
         let speed = track(options.speed.as_deref(), "speed", "m/s", (index, files.len()), file)?;
@@ -196,7 +211,8 @@ fn axes(options: &Options, path: &Path, table: &Columns) -> Result<Vec<Vec<f64>>
     if !options.columns.is_empty() {
         return options.columns.iter().map(|name| table.column(name.trim()).map(<[f64]>::to_vec)).collect();
     }
-    let other = [Some(TIME), options.speed.as_deref(), options.force.as_deref(), options.tangential.as_deref()];
+    let other =
+        [Some(TIME), options.speed.as_deref(), options.force.as_deref(), options.tangential.as_deref()];
     let free: Vec<usize> =
         (0..table.names.len()).filter(|i| !other.contains(&Some(table.names[*i].as_str()))).collect();
     if free.is_empty() || free.len() > MOST_AXES {
@@ -249,7 +265,11 @@ impl Columns {
         let refused = |error: csv::Error| CliError::file(path, error, "must be a table with a header line");
         let names: Vec<String> = reader.headers().map_err(refused)?.iter().map(str::to_owned).collect();
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
-            return Err(CliError::file(path, "begins with numbers", "must begin with a header line that names the columns"));
+            return Err(CliError::file(
+                path,
+                "begins with numbers",
+                "must begin with a header line that names the columns",
+            ));
         }
         let mut values = vec![Vec::new(); names.len()];
         for (row, record) in reader.records().enumerate() {

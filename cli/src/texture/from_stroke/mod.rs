@@ -88,8 +88,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let probe = input::probe(&options.probe)?;
     let quantity = input::quantity(options)?;
     let tool = Tool { probe: probe.constants, quantity };
-    let fit_options =
-        FitOptions { tool, probe_error: options.probe_error, colour: options.colour.as_deref().map(input::colour).transpose()? };
+    let fit_options = FitOptions {
+        tool,
+        probe_error: options.probe_error,
+        colour: options.colour.as_deref().map(input::colour).transpose()?,
+    };
     let mut progress = super::bar("from stroke");
     let found = found(options, &fit_options)?;
     progress(1.0);
@@ -98,11 +101,16 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 
 fn found(options: &Options, fit_options: &FitOptions) -> Result<StrokeSurface, CliError> {
     let first = &options.strokes[0];
-    let at = |error: StrokeError| CliError::new(error.field, error.what, error.expected).within(first.display());
+    let at =
+        |error: StrokeError| CliError::new(error.field, error.what, error.expected).within(first.display());
     let is_models = |path: &Path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml"));
     if options.strokes.iter().any(|path| is_models(path)) {
         if options.strokes.len() > 1 {
-            return Err(CliError::file(first, "stands beside other files", "name one file of models by itself"));
+            return Err(CliError::file(
+                first,
+                "stands beside other files",
+                "name one file of models by itself",
+            ));
         }
         let text = std::fs::read_to_string(first).map_err(|error| CliError::read(first, &error))?;
         let models = models::read(&text).map_err(at)?;

@@ -20,8 +20,8 @@ pub(super) fn svg(name: &str, found: &StrokeSurface) -> String {
     }
     let groups: Vec<usize> = (0..found.groups.len()).take(DRAWN).collect();
     let all = found.levels.iter().flat_map(|level| [level.2, level.3]);
-    let (low, high) =
-        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), db| (f64::min(low, db), f64::max(high, db)));
+    let (low, high) = all
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), db| (f64::min(low, db), f64::max(high, db)));
     for row in groups.chunks(A_ROW) {
         figure.row(180.0, row.iter().map(|group| spectra(found, *group, (low - 3.0, high + 3.0))));
     }

@@ -2,6 +2,7 @@
 
 use asperity_plot::quantity;
 use asperity_stroke::StrokeSurface;
+use asperity_stroke::relief::wavenumber;
 use serde::Serialize;
 use std::path::Path;
 
@@ -9,6 +10,8 @@ use std::path::Path;
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Report {
     octaves: Vec<Octave>,
+    /// Third octaves of the felt spectrum.
+    bands: Vec<Band>,
     alpha: f64,
     alpha_se: f64,
     /// Missing where no outer scale was seen.
@@ -40,6 +43,14 @@ struct Octave {
 }
 
 #[derive(Debug, Clone, Serialize)]
+struct Band {
+    wavenumber_per_m: f64,
+    /// Density of the felt height, dB re 1 m³.
+    level_db: f64,
+    se_db: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
 struct Line {
     period_m: f64,
     amplitude_m: f64,
@@ -62,7 +73,8 @@ struct Recorded {
 
 impl Report {
     pub(super) fn new(found: &StrokeSurface, files: Vec<String>) -> Self {
-        let octaves = found.octaves.iter().zip(&found.probe_se_db).filter(|(octave, _)| !octave.is_extrapolated);
+        let octaves =
+            found.octaves.iter().zip(&found.probe_se_db).filter(|(octave, _)| !octave.is_extrapolated);
         Self {
             octaves: octaves
                 .map(|(octave, probe_se_db)| Octave {
@@ -70,6 +82,15 @@ impl Report {
                     rms_m: octave.rms_m,
                     rms_se_db: octave.se_db.hypot(*probe_se_db),
                     sampling_se_db: octave.se_db,
+                })
+                .collect(),
+            bands: found
+                .bands
+                .iter()
+                .map(|band| Band {
+                    wavenumber_per_m: wavenumber(band.band),
+                    level_db: band.level_db,
+                    se_db: band.se_db,
                 })
                 .collect(),
             alpha: found.law.alpha,

@@ -3,9 +3,9 @@
 use super::input::NamedProbe;
 use crate::error::CliError;
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights, Relief};
+use asperity_stroke::StrokeSurface;
 use asperity_stroke::octaves::OUTER_SCALE_M;
 use asperity_stroke::tool::Ring;
-use asperity_stroke::StrokeSurface;
 use std::f64::consts::PI;
 
 /// Side of a surface without lines, m: longer than the stroke.
@@ -80,7 +80,11 @@ pub(super) fn scene(
     let source = map.map_or(String::new(), |map| {
         format!("displacement = \"displacement.png\"\nrelief_m = {:?}\nwrap = \"mirror\"\n", map.relief_m)
     });
-    let body = if has_ring { "modes = \"ring.modes.json\"" } else { "stock = \"plate\"\nsize_m = 0.3\nmaterial = \"wood\"" };
+    let body = if has_ring {
+        "modes = \"ring.modes.json\""
+    } else {
+        "stock = \"plate\"\nsize_m = 0.3\nmaterial = \"wood\""
+    };
     let octaves: Vec<String> = found.relief.octaves_db.iter().map(|db| format!("{db:.2}")).collect();
     let friction = found.friction.map_or(String::new(), |mu| format!("friction = {mu:?}\n"));
     format!(
