@@ -52,6 +52,8 @@ const PADDED: usize = 4;
 const FOLLOWED: [f64; 3] = [0.25, 0.12, 0.08];
 /// Cutoff to which the followed phase is smoothed, Hz.
 const WANDER_HZ: f64 = 6.0;
+/// Distance of peaks that one smeared line breaks into, a share of its period.
+const BROKEN: f64 = 0.12;
 /// Hump over its third octave that is no chance, dB.
 const SMEARED_DB: f64 = -5.0;
 /// Line over its third octave from which its phase is trusted, dB.
@@ -90,7 +92,11 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
     if stroke.speed_m_s.is_measured() {
         return found;
     }
-    let Some(hump) = hump(&profile) else { return found };
+    // A smeared line breaks into peaks about its place.
+    let about = |line: &Line| (line.period_m / found.lines[0].period_m - 1.0).abs() < BROKEN;
+    let is_broken = found.lines.iter().filter(|line| about(line)).count() >= 3;
+    let smeared = Lines { lines: Vec::new(), wander: 0.0, is_smeared: true };
+    let Some(hump) = hump(&profile) else { return if is_broken { smeared } else { found } };
     let steady = found.lines.len() == 1
         || found.lines.first().is_some_and(|line| line.over_relief_db > hump.over_db - 1.0);
     if steady && !hump.is_wide {
@@ -101,7 +107,7 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
         return Lines {
             lines: Vec::new(),
             wander: 0.0,
-            is_smeared: hump.is_wide && hump.over_db > SMEARED_DB,
+            is_smeared: is_broken || hump.is_wide && hump.over_db > SMEARED_DB,
         };
     }
     let (followed, wander, period_m) = follow(height, &path, stroke, hump.period_m);
