@@ -12,7 +12,10 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 20] = [
+const READ: [&str; 23] = [
+    "strokes",
+    "ring",
+    "colour",
     "scene",
     "recording",
     "further",

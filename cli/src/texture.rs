@@ -7,6 +7,7 @@ pub mod brownian;
 pub mod compare;
 pub mod from_normals;
 pub mod from_photo;
+pub mod from_stroke;
 pub mod metamer;
 pub mod object;
 pub mod rank;
@@ -32,6 +33,7 @@ pub enum Verb {
     Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
+    FromStroke(Box<from_stroke::Options>),
     Metamer(metamer::Options),
     Rank(rank::Options),
 }
@@ -49,6 +51,7 @@ pub fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
+        Verb::FromStroke(options) => from_stroke::run(&options),
         Verb::Metamer(options) => metamer::run(&options),
         Verb::Rank(options) => rank::run(&options),
     }

@@ -8,6 +8,7 @@ mod damping_from_recordings;
 mod demo;
 mod export;
 mod fit;
+mod from_stroke;
 mod haptic;
 mod hostile;
 mod house;

@@ -79,6 +79,8 @@ pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
 pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
 /// Wavelength beyond which the micro-relief is flat.
 pub const OUTER_SCALE_M: Range = Range::new(1e-5, 1.0, "1e-5 to 1 m");
+/// Gain of an octave of the micro-relief over its law.
+pub const OCTAVE_DB: Range = Range::new(-60.0, 40.0, "-60 to 40 dB");
 /// Side of a surface.
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
 /// Each coordinate of a place in a body.
@@ -316,6 +318,7 @@ mod tests {
             SPEED_M_S,
             MICRO_RELIEF_M,
             OUTER_SCALE_M,
+            OCTAVE_DB,
             SIDE_M,
             TIME_SCALE,
             PLACE_M,

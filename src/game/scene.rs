@@ -286,7 +286,7 @@ impl Scene {
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)
         };
         let (trajectory, place_trajectory) = (trajectory(period_m)?, trajectory([f64::INFINITY; 2])?);
-        let relief = (surface.micro_relief_m, surface.outer_scale_m);
+        let relief = (surface.micro_relief_m, surface.outer_scale_m, surface.micro_relief_octaves_db);
         let overlay = Overlay::new(period_m, properties.band.shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.compliance_m_n > 0.0 || properties.tip_law.is_some();

@@ -106,6 +106,9 @@ impl<'a> Loader<'a> {
         if let Some(outer_scale_m) = entry.outer_scale_m {
             surface = surface.outer_scale_m(outer_scale_m);
         }
+        if let Some(gains_db) = entry.micro_relief_octaves_db {
+            surface = surface.micro_relief_octaves_db(gains_db);
+        }
         if let Some(frame) = entry.frame {
             surface = surface.frame(frame);
         }

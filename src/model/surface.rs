@@ -5,6 +5,7 @@ use crate::model::excitation::{Excitation, Exciter};
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
+use asperity_dsp::fractal_noise::OCTAVES;
 use asperity_dsp::limits;
 use asperity_dsp::stick_slip::Friction;
 use asperity_surface::footprint::{self, footprint_radius_m};
@@ -67,6 +68,7 @@ pub struct Surface {
     pub(crate) roughness: Roughness,
     pub(crate) micro_relief_m: f64,
     pub(crate) outer_scale_m: f64,
+    pub(crate) micro_relief_octaves_db: [f64; OCTAVES],
     pub(crate) friction: Option<f64>,
     pub(crate) compliance_m_n: f64,
     pub(crate) excitation: Excitation,
@@ -128,6 +130,7 @@ impl Surface {
             roughness: Roughness::FromSource,
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
             outer_scale_m: DEFAULT_OUTER_SCALE_M,
+            micro_relief_octaves_db: [0.0; OCTAVES],
             friction: None,
             compliance_m_n: 0.0,
             excitation: Excitation::default(),
@@ -249,6 +252,14 @@ impl Surface {
         self
     }
 
+    /// Gains of the overlay's twelve octaves over its law, coarsest first, dB: octave i lies about the
+    /// wavelength 31.5 mm / 2^i.
+    #[must_use]
+    pub fn micro_relief_octaves_db(mut self, gains_db: [f64; OCTAVES]) -> Self {
+        self.micro_relief_octaves_db = gains_db;
+        self
+    }
+
     /// Coulomb friction coefficient of the 3-D force output, whatever the source says.
     #[must_use]
     pub fn friction(mut self, coefficient: f64) -> Self {
@@ -341,6 +352,9 @@ impl Surface {
     pub(crate) fn checked(mut self) -> Result<Self, BadValue> {
         within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
         within("outer_scale_m", self.outer_scale_m, limits::OUTER_SCALE_M)?;
+        for gain_db in self.micro_relief_octaves_db {
+            within("micro_relief_octaves_db", gain_db, limits::OCTAVE_DB)?;
+        }
         let reach_m = self.properties().reach_m;
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;

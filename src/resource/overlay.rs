@@ -19,7 +19,7 @@
 //! would need both through the trait, which is five methods because no other source does.
 
 use asperity_dsp::fractal_noise::{
-    FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
+    FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OCTAVES, OctaveWeights, Relief, growth,
 };
 use asperity_surface::height_field::MAX_BLOCK;
 use asperity_surface::tiled::{TileAxis, TilePosition};
@@ -35,6 +35,7 @@ pub(crate) struct Overlay {
     /// Rms at an [`ORDINARY`] roughness.
     ordinary_m: f64,
     outer_scale_m: f64,
+    gains_db: [f64; OCTAVES],
     /// For tips that have ridden here, and which rides now.
     tips: [Tip; TIPS],
     now: usize,
@@ -144,12 +145,17 @@ pub(crate) type TileCells = [NoiseCells; COPIES.len()];
 
 impl Overlay {
     /// The overlay of a surface that is the same after `period_m`, ∞ for never.
-    pub(crate) fn new(period_m: [f64; 2], longest_m: f64, (rms_m, outer_scale_m): (f64, f64)) -> Self {
+    pub(crate) fn new(
+        period_m: [f64; 2],
+        longest_m: f64,
+        (rms_m, outer_scale_m, gains_db): (f64, f64, [f64; OCTAVES]),
+    ) -> Self {
         let axes = period_m.map(|length_m| TileAxis::new(length_m, LONGEST_CELL_M));
         let nobody = OctaveWeights::pinned(0.0, f64::INFINITY);
         let tips = [Tip { radius_m: f64::NAN, below: nobody, all: nobody }; TIPS];
         let ordinary_m = rms_m * growth(ORDINARY);
-        let mut overlay = Self { axes, longest_m, rms_m, ordinary_m, outer_scale_m, tips, now: 0, next: 0 };
+        let mut overlay =
+            Self { axes, longest_m, rms_m, ordinary_m, outer_scale_m, gains_db, tips, now: 0, next: 0 };
         overlay.tune(0.0);
         overlay
     }
@@ -170,6 +176,7 @@ impl Overlay {
                 tip_radius_m: radius_m,
                 longest_wavelength_m,
             })
+            .with_gains_db(&self.gains_db)
         };
         self.tips[self.next] = Tip { radius_m, below: weights(self.longest_m), all: weights(f64::INFINITY) };
         self.now = self.next;

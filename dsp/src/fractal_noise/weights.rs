@@ -86,6 +86,17 @@ impl OctaveWeights {
         Self::of(CELLS_M.map(of))
     }
 
+    /// Weights whose octaves are stronger by these gains, dB, coarsest first; −∞ leaves one out.
+    #[must_use]
+    pub fn with_gains_db(&self, gains_db: &[f64; OCTAVES]) -> Self {
+        let mut of = self.of;
+        for (weight, gain_db) in of.iter_mut().zip(gains_db) {
+            let gain = libm::pow(10.0, 0.05 * gain_db) as f32;
+            weight.iter_mut().for_each(|term| *term *= gain);
+        }
+        Self::of(of)
+    }
+
     fn of(of: [[f32; TERMS]; OCTAVES]) -> Self {
         let coarsest = of.iter().position(|weight| *weight != [0.0; TERMS]).unwrap_or(OCTAVES);
         Self { of, coarsest }

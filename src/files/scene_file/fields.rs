@@ -170,6 +170,28 @@ impl Fields {
         }
     }
 
+    /// Up to N numbers; `rest` stands for those that are not written.
+    pub fn up_to<const N: usize>(
+        &mut self,
+        of: &Parameter,
+        rest: f64,
+    ) -> Result<Option<[f64; N]>, FileError> {
+        let Some(value) = self.take(of.key) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.as_array().and_then(|items| items.iter().map(as_number).collect());
+        let Some(numbers) = numbers.filter(|numbers| (1..=N).contains(&numbers.len())) else {
+            return Err(self.wrong_kind(of.key, &value, &format!("1 to {N} numbers")));
+        };
+        if let Some(number) = numbers.iter().find(|number| !of.range.holds(**number)) {
+            return Err(self.refuse(
+                of.key,
+                format!("{number} is refused"),
+                format!("each {}", right(of.range)),
+            ));
+        }
+        Ok(Some(std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(rest))))
+    }
+
     /// A vector.
     pub fn vector(&mut self, of: &Parameter) -> Result<Option<[f64; 3]>, FileError> {
         let Some(value) = self.take(of.key) else { return Ok(None) };

@@ -114,7 +114,10 @@ impl BodyEntry {
 }
 
 /// Reads one table of `[[probe]]` by itself.
-pub(crate) fn probe_of(table: toml::Table) -> Result<Probe, FileError> {
+///
+/// # Errors
+/// When a key is unknown or out of its range.
+pub fn probe_of(table: toml::Table) -> Result<Probe, FileError> {
     let mut fields = Fields::new(table, "probe");
     fields.text("name")?;
     read_probe(fields)

@@ -8,6 +8,7 @@ use crate::model::excitation::{Excitation, Exciter};
 use crate::model::frame::SurfaceFrame;
 use crate::model::surface::DEFAULT_STICK_SLIP;
 use crate::parameters::{frame, surface as parameters};
+use asperity_dsp::fractal_noise::OCTAVES;
 use asperity_dsp::stick_slip::Friction;
 use asperity_surface::wrap::Wrap;
 use std::path::{Path, PathBuf};
@@ -37,6 +38,8 @@ pub struct SurfaceEntry {
     pub micro_relief_m: Option<f64>,
     /// Wavelength beyond which the overlay is flat, m; none = the engine's default.
     pub outer_scale_m: Option<f64>,
+    /// Gains of the overlay's octaves over its law, coarsest first, dB.
+    pub micro_relief_octaves_db: Option<[f64; OCTAVES]>,
     /// Continuation beyond the edge.
     pub wrap: Wrap,
     /// Excitation of the body by sliding.
@@ -85,6 +88,7 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         height_m: fields.needed_number(&parameters::HEIGHT_M)?,
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
+        micro_relief_octaves_db: fields.up_to(&parameters::MICRO_RELIEF_OCTAVES_DB, 0.0)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation,
         stick_slip: read_stick_slip(&mut fields, excitation)?,

@@ -1,0 +1,480 @@
+//! Felt relief: the spectrum over place in third octaves, its slope, and its levels with their
+//! errors.
+//!
+//! ```text
+//! Ŝ(q) = Σ (P − N) / Σ |H|² (q/q₀)^−s / v     over the bins of a third octave about q₀, all windows
+//! se = 4.34 (1 + N/(P − N)) / √((B + Δ) T)    dB;  B: width of the band, Δ: a bin, T: time
+//! ```
+//! s is the slope of the spectrum about the band, from a first pass with s = 2.5.
+
+use crate::db;
+use crate::floor::Floor;
+use crate::octaves::{kernel_origin, octave_kernel, wavelength_m};
+use crate::recording::{STANDSTILL_M_S, Window};
+use asperity_dsp::fractal_noise::{OCTAVES, Relief, growth};
+
+/// Third octaves of wavenumbers: centre i is at 10^(i/10) 1/m.
+pub const BANDS: usize = 60;
+/// Wavenumber beyond which no tip rides, 1/m: 20 µm.
+const FINEST_Q: f64 = 5e4;
+/// Slope that the first pass takes for the spectrum's.
+const FIRST_SLOPE: f64 = 2.5;
+/// Shortest time of a group, s.
+const LEAST_S: f64 = 0.5;
+/// Power over the floor below which a band does not count.
+const LEAST_OVER_FLOOR: f64 = 0.25;
+/// Error of every level that no longer recording takes away, dB.
+const LEAST_SE_DB: f64 = 0.1;
+
+/// Centre of a third octave, 1/m.
+#[must_use]
+pub fn wavenumber(band: usize) -> f64 {
+    10f64.powf(band as f64 / 10.0)
+}
+
+/// Level of a third octave in windows of one stroke, speed and force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// Group of windows.
+    pub group: usize,
+    /// Third octave of wavenumbers.
+    pub band: usize,
+    /// Frequency of its centre at the group's speed, Hz.
+    pub frequency_hz: f64,
+    /// Density of the felt height, dB re 1 m³.
+    pub level_db: f64,
+    /// Standard error of sampling, dB.
+    pub se_db: f64,
+}
+
+/// Windows of one stroke at one speed and force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Stroke, by its place.
+    pub stroke: usize,
+    /// Mean speed, m/s.
+    pub speed_m_s: f64,
+    /// Mean force, N.
+    pub force_n: f64,
+    /// Time, s.
+    pub seconds: f64,
+    members: Vec<usize>,
+}
+
+/// Windows sorted into groups: speeds within a third of an octave, forces within half.
+#[must_use]
+pub fn groups(windows: &[Window]) -> Vec<Group> {
+    let mut all: Vec<(_, Group)> = Vec::new();
+    for (i, window) in windows.iter().enumerate() {
+        if window.speed_m_s < STANDSTILL_M_S || window.force_n <= 0.0 {
+            continue;
+        }
+        let key = (
+            window.stroke,
+            (3.0 * window.speed_m_s.log2()).round() as i64,
+            (2.0 * window.force_n.log2()).round() as i64,
+        );
+        let place = all.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            let none = Group {
+                stroke: window.stroke,
+                speed_m_s: 0.0,
+                force_n: 0.0,
+                seconds: 0.0,
+                members: Vec::new(),
+            };
+            all.push((key, none));
+            all.len() - 1
+        });
+        let group = &mut all[place].1;
+        group.speed_m_s += window.speed_m_s;
+        group.force_n += window.force_n;
+        group.seconds += window.stands_for_s;
+        group.members.push(i);
+    }
+    all.retain(|(_, group)| group.seconds >= LEAST_S);
+    all.into_iter()
+        .map(|(_, group)| {
+            let count = group.members.len() as f64;
+            Group { speed_m_s: group.speed_m_s / count, force_n: group.force_n / count, ..group }
+        })
+        .collect()
+}
+
+/// Levels of the felt height between two frequencies; `lines_q` are wavenumbers of lines, whose bins
+/// do not count. `colour_db` is the response of the rig, where it is known.
+#[must_use]
+pub fn levels(
+    (windows, groups): (&[Window], &[Group]),
+    floors: &[Floor],
+    (low_hz, high_hz): (f64, f64),
+    lines: &[(f64, f64)],
+    slopes: &[f64],
+    colour_db: &dyn Fn(f64) -> f64,
+) -> Vec<Level> {
+    let edge = 10f64.powf(0.05);
+    let mut all = Vec::new();
+    for (place, group) in groups.iter().enumerate() {
+        let mut sums = vec![[0.0f64; 5]; BANDS];
+        for window in group.members.iter().map(|i| &windows[*i]) {
+            let v = window.speed_m_s;
+            let floor = &floors[window.stroke].density;
+            let response = &window.response;
+            for (band, sum) in sums.iter_mut().enumerate() {
+                let centre = wavenumber(band);
+                let (from_hz, to_hz) = (centre * v / edge, centre * v * edge);
+                if from_hz < low_hz || to_hz > high_hz.min(0.45 * window.rate_hz) || centre * edge > FINEST_Q
+                {
+                    continue;
+                }
+                let from = (from_hz / window.bin_hz).ceil() as usize;
+                let to = ((to_hz / window.bin_hz).ceil() as usize).max(from + 1);
+                let slope = slopes.get(band).copied().unwrap_or(FIRST_SLOPE);
+                for i in from..to.min(window.density.len()) {
+                    let q = i as f64 * window.bin_hz / v;
+                    if lines.iter().any(|(line, reach)| (q - line).abs() < reach + 2.0 * window.bin_hz / v) {
+                        continue;
+                    }
+                    let rig = 10f64.powf(0.1 * colour_db(i as f64 * window.bin_hz));
+                    // Bins weigh alike for the spectrum of a line of this slope.
+                    let white = (q / centre).powf(slope) / (response[i] * rig).max(f64::MIN_POSITIVE);
+                    sum[0] += window.density[i] * white * v;
+                    sum[1] += floor[i] * white * v;
+                    sum[2] += 1.0;
+                }
+                sum[3] += window.stands_for_s;
+                sum[4] = to_hz - from_hz + window.bin_hz;
+            }
+        }
+        for (band, [power, floor, bins, seconds, width_hz]) in sums.into_iter().enumerate() {
+            let own = power - floor;
+            if bins < 1.0 || own <= LEAST_OVER_FLOOR * floor {
+                continue;
+            }
+            let sampling = 4.34 * (1.0 + floor / own) / (width_hz * seconds).sqrt();
+            all.push(Level {
+                group: place,
+                band,
+                frequency_hz: wavenumber(band) * group.speed_m_s,
+                level_db: db(own / bins),
+                se_db: sampling.hypot(LEAST_SE_DB),
+            });
+        }
+    }
+    all
+}
+
+/// Third octave of the felt spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Third octave of wavenumbers.
+    pub band: usize,
+    /// Density, dB re 1 m³.
+    pub level_db: f64,
+    /// Standard error of sampling, dB.
+    pub se_db: f64,
+}
+
+/// Slope of the spectrum about each band, between half an octave below and above.
+#[must_use]
+pub fn slopes(bands: &[Band]) -> Vec<f64> {
+    let mut slopes = vec![FIRST_SLOPE; BANDS];
+    for at in bands {
+        let near: Vec<&Band> = bands.iter().filter(|band| band.band.abs_diff(at.band) <= 2).collect();
+        if near.len() < 3 {
+            continue;
+        }
+        let count = near.len() as f64;
+        let x = near.iter().map(|band| band.band as f64).sum::<f64>() / count;
+        let xx: f64 = near.iter().map(|band| (band.band as f64 - x).powi(2)).sum();
+        let xy: f64 = near.iter().map(|band| (band.band as f64 - x) * band.level_db).sum();
+        slopes[at.band] = (-xy / xx).clamp(-1.0, 5.0);
+    }
+    slopes
+}
+
+/// Power law of the ground under a tip: S(q) ∝ q^−α from the outer scale down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerLaw {
+    /// Exponent α of the ground, before a tip rides on it.
+    pub alpha: f64,
+    /// Its standard error.
+    pub alpha_se: f64,
+    /// Rms of the octave about 1 mm of the ground, m.
+    pub at_1mm_m: f64,
+    /// Wavelength above which the spectrum is flat, m; none was seen where it is ∞.
+    pub outer_scale_m: f64,
+    /// True where it turns flat over octaves, as the engine's law does, and not at once.
+    pub is_gradual: bool,
+}
+
+/// Wavelength at which a power law has its level, m.
+const PINNED_M: f64 = 1e-3;
+
+impl PowerLaw {
+    /// Share of an octave's amplitude that a tip follows.
+    #[must_use]
+    pub fn followed(&self, wavelength_m: f64, tip_radius_m: f64) -> f64 {
+        let roughness = ((2.5 - self.alpha) / 1.5).clamp(0.0, 1.0);
+        let relief = Relief {
+            rms_at_1mm_m: self.at_1mm_m / growth(roughness),
+            outer_scale_m: f64::INFINITY,
+            tip_radius_m,
+            longest_wavelength_m: f64::INFINITY,
+        };
+        relief.share(wavelength_m, roughness) / growth(roughness)
+    }
+
+    /// Density of the felt height under a tip, m³: the engine's octaves, each as broad as its noise
+    /// is.
+    fn density_under(&self, q: f64, tip_radius_m: f64) -> f64 {
+        let kernel = octave_kernel();
+        let mut density = 0.0;
+        for octave in 0..OCTAVES {
+            let wavelength_m = wavelength_m(octave);
+            let place = 10.0 * (q * wavelength_m).log10() + kernel_origin();
+            let below = place.floor();
+            if below < 0.0 || below as usize + 1 >= kernel.len() {
+                continue;
+            }
+            let (a, b) = (kernel[below as usize].max(1e-12), kernel[below as usize + 1].max(1e-12));
+            let shape = a * (b / a).powf(place - below);
+            let beyond = wavelength_m / self.outer_scale_m;
+            let flat = if self.is_gradual { (1.0 + beyond * beyond).sqrt() } else { beyond.max(1.0) };
+            let rms_m = self.at_1mm_m
+                * (wavelength_m / PINNED_M).powf(0.5 * (self.alpha - 1.0))
+                * flat.powf(-0.5 * self.alpha)
+                * self.followed(wavelength_m, tip_radius_m);
+            density += rms_m * rms_m * wavelength_m * shape;
+        }
+        density
+    }
+
+    /// Density of the felt height in a third octave, dB re 1 m³.
+    #[must_use]
+    pub fn level_db(&self, band: usize, tip_radius_m: f64) -> f64 {
+        let q = wavenumber(band);
+        let knee = 1.0 / self.outer_scale_m;
+        let flat = |q: f64| if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
+        // Rms of an octave about 1 mm: ∫ S dq from q/√2 to q√2.
+        let octave = octave_integral(self.alpha) / PINNED_M;
+        if tip_radius_m > 0.0 {
+            return db(self.density_under(q, tip_radius_m));
+        }
+        db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat(q) * PINNED_M).log10()
+    }
+
+    /// Law through the bands, and what a tip of this radius leaves of it.
+    #[must_use]
+    pub fn through(bands: &[Band], tip_radius_m: f64) -> Self {
+        let mut best: Option<(f64, Self)> = None;
+        let longest = bands.first().map_or(0, |band| band.band);
+        let knees = (longest..longest + 12).map(|band| 1.0 / wavenumber(band));
+        let scales = std::iter::once((f64::INFINITY, false))
+            .chain(knees.flat_map(|scale_m| [(scale_m, false), (scale_m, true)]));
+        for (outer_scale_m, is_gradual) in scales {
+            let (misfit, law) = Self::fitted(bands, tip_radius_m, outer_scale_m, is_gradual);
+            // An outer scale is a constant more: it has to earn it.
+            let misfit = misfit + if outer_scale_m.is_finite() { 9.0 } else { 0.0 };
+            if best.as_ref().is_none_or(|(least, _)| misfit < *least) {
+                best = Some((misfit, law));
+            }
+        }
+        best.map_or(
+            Self {
+                alpha: 2.0,
+                alpha_se: f64::INFINITY,
+                at_1mm_m: 0.0,
+                outer_scale_m: f64::INFINITY,
+                is_gradual: false,
+            },
+            |(_, law)| law,
+        )
+    }
+
+    /// Gauss–Newton over exponent and level.
+    fn fitted(bands: &[Band], tip_radius_m: f64, outer_scale_m: f64, is_gradual: bool) -> (f64, Self) {
+        let pinned = bands.iter().min_by_key(|band| band.band.abs_diff(30));
+        let level_m = pinned.map_or(1e-6, |band| 10f64.powf(0.05 * band.level_db) * 20.0);
+        let mut law =
+            Self { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: level_m, outer_scale_m, is_gradual };
+        let mut misfit = f64::INFINITY;
+        for _ in 0..30 {
+            let mut normal = [0.0f64; 5];
+            misfit = 0.0;
+            for band in bands {
+                let weight = band.se_db.hypot(0.1).powi(-2);
+                let at = |law: &Self| law.level_db(band.band, tip_radius_m);
+                let own = at(&law);
+                let by_alpha = (at(&Self { alpha: law.alpha + 0.01, ..law }) - own) / 0.01;
+                let by_level = at(&Self { at_1mm_m: law.at_1mm_m * 10f64.powf(0.005), ..law }) - own;
+                let by_level = by_level / 0.1;
+                let beside = band.level_db - own;
+                // Far under a tip the law of the tip is a guess.
+                let seen = law.followed(1.0 / wavenumber(band.band), tip_radius_m);
+                let weight = if seen > 0.3 { weight } else { 0.0 };
+                normal[0] += weight * by_alpha * by_alpha;
+                normal[1] += weight * by_alpha * by_level;
+                normal[2] += weight * by_level * by_level;
+                normal[3] += weight * by_alpha * beside;
+                normal[4] += weight * by_level * beside;
+                misfit += weight * beside * beside;
+            }
+            let [aa, al, ll, a, l] = normal;
+            let determinant = (aa * ll - al * al).max(1e-12);
+            let step = [(ll * a - al * l) / determinant, (aa * l - al * a) / determinant];
+            law.alpha = (law.alpha + step[0].clamp(-0.5, 0.5)).clamp(-1.0, 5.0);
+            law.at_1mm_m *= 10f64.powf(0.05 * step[1].clamp(-10.0, 10.0));
+            law.alpha_se = (ll / determinant).sqrt();
+            if step[0].abs() < 1e-5 && step[1].abs() < 1e-4 {
+                break;
+            }
+        }
+        (misfit, law)
+    }
+}
+
+/// ∫ q^−α dq over an octave about 1.
+fn octave_integral(alpha: f64) -> f64 {
+    let half = std::f64::consts::SQRT_2;
+    if (alpha - 1.0).abs() < 1e-9 {
+        return 2f64.ln();
+    }
+    (half.powf(1.0 - alpha) - half.powf(alpha - 1.0)) / (1.0 - alpha)
+}
+
+/// Octave of the felt height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Octave {
+    /// Wavelength about which it lies, m.
+    pub wavelength_m: f64,
+    /// Rms, m.
+    pub rms_m: f64,
+    /// Standard error of sampling, dB.
+    pub se_db: f64,
+    /// True where the recording does not hold it, and the slope of its neighbours goes on.
+    pub is_extrapolated: bool,
+}
+
+/// Spectrum that goes on beyond its bands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum<'a> {
+    bands: &'a [Band],
+}
+
+impl<'a> Spectrum<'a> {
+    /// Spectrum of bands in rising order; at least two.
+    #[must_use]
+    pub fn new(bands: &'a [Band]) -> Self {
+        Self { bands }
+    }
+
+    /// Level at a place between third octaves, dB re 1 m³: a line between bands; beyond them the slope
+    /// of the last one and a half octaves at the long end, of the last two at the short one, which
+    /// rises no further.
+    #[must_use]
+    pub fn at(&self, place: f64) -> f64 {
+        let bands = self.bands;
+        let point = |band: &Band| (band.band as f64, band.level_db);
+        let (first, last) = match bands {
+            [] => return f64::NEG_INFINITY,
+            [first, .., last] => (first, last),
+            [only] => (only, only),
+        };
+        if place <= first.band as f64 {
+            let slope = end_slope(&bands[..bands.len().min(6)]).min(0.0);
+            return first.level_db + slope * (place - first.band as f64);
+        }
+        if place >= last.band as f64 {
+            let slope = end_slope(&bands[bands.len().saturating_sub(7)..]).min(0.0);
+            return last.level_db + slope * (place - last.band as f64);
+        }
+        let next = bands.partition_point(|band| band.band as f64 <= place);
+        let ((x0, y0), (x1, y1)) = (point(&bands[next - 1]), point(&bands[next]));
+        y0 + (y1 - y0) * (place - x0) / (x1 - x0)
+    }
+
+    /// Octave about a wavelength.
+    #[must_use]
+    pub fn octave(&self, wavelength_m: f64) -> Octave {
+        const STEPS: usize = 24;
+        let centre = -10.0 * wavelength_m.log10();
+        let half = 10.0 * std::f64::consts::SQRT_2.log10();
+        let power: f64 = (0..STEPS)
+            .map(|i| {
+                let place = centre - half + 2.0 * half * (i as f64 + 0.5) / STEPS as f64;
+                // dq = q ln 10/10 d(place)
+                10f64.powf(0.1 * self.at(place) + 0.1 * place)
+            })
+            .sum::<f64>()
+            * (2.0 * half / STEPS as f64)
+            * 0.1
+            * std::f64::consts::LN_10;
+        let inside: Vec<f64> = self
+            .bands
+            .iter()
+            .filter(|band| (band.band as f64 - centre).abs() <= half)
+            .map(|band| band.se_db)
+            .collect();
+        let (first, last) = (self.bands.first(), self.bands.last());
+        let reached = first.is_some_and(|band| band.band as f64 - 0.5 <= centre - half)
+            && last.is_some_and(|band| band.band as f64 + 0.5 >= centre + half);
+        let se = inside.iter().map(|se| se * se).sum::<f64>().sqrt() / inside.len().max(1) as f64;
+        Octave {
+            wavelength_m,
+            rms_m: power.sqrt(),
+            se_db: if inside.is_empty() { f64::INFINITY } else { se },
+            is_extrapolated: !reached,
+        }
+    }
+}
+
+/// Slope of the best line, dB a third octave.
+fn end_slope(bands: &[Band]) -> f64 {
+    let count = bands.len().max(1) as f64;
+    let x = bands.iter().map(|band| band.band as f64).sum::<f64>() / count;
+    let xx: f64 = bands.iter().map(|band| (band.band as f64 - x).powi(2)).sum();
+    let xy: f64 = bands.iter().map(|band| (band.band as f64 - x) * band.level_db).sum();
+    if xx > 0.0 { xy / xx } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::octaves::octave_spectrum;
+    use asperity_dsp::fractal_noise::{FractalNoise, OctaveWeights};
+
+    // The engine's own noise, its octaves weighed for a tip.
+    #[test]
+    fn the_slope_of_the_ground_is_found_under_a_tip() {
+        let field = FractalNoise::new(5);
+        for roughness in [0.0, 0.3, 0.6, 1.0] {
+            for tip_radius_m in [0.0, 0.4e-3, 1.6e-3, 3e-3] {
+                let alpha = FractalNoise::alpha(roughness);
+                let weights = OctaveWeights::new(&Relief {
+                    rms_at_1mm_m: 10e-6 / growth(roughness),
+                    outer_scale_m: 0.01,
+                    tip_radius_m,
+                    longest_wavelength_m: f64::INFINITY,
+                });
+                let spectra: Vec<Vec<f64>> =
+                    (0..OCTAVES).map(|i| octave_spectrum(&field, &weights, roughness, i, 17..42)).collect();
+                let bands: Vec<Band> = (17..42)
+                    .map(|band| {
+                        let sum = spectra.iter().map(|spectrum| spectrum[band - 17]).sum();
+                        Band { band, level_db: db(sum), se_db: 0.2 }
+                    })
+                    .collect();
+                let law = PowerLaw::through(&bands, tip_radius_m);
+                // What a tip leaves of the octaves hides their slope, and the engine's weights are
+                // polynomials of R within half a decibel.
+                let bound = if tip_radius_m > 0.0 { 0.25 } else { 0.1 };
+                let beside = law.alpha - alpha;
+                assert!(
+                    beside.abs() < bound,
+                    "R {roughness}, tip {tip_radius_m} m: {} for {alpha}",
+                    law.alpha
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Strokes made with known ground, read back.
+
+mod colour;
+mod lines;
+mod made;
+mod octaves;
