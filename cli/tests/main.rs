@@ -8,6 +8,7 @@ mod damping_from_recordings;
 mod demo;
 mod export;
 mod fit;
+mod full_disk;
 mod haptic;
 mod hostile;
 mod house;
