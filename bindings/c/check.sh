@@ -94,6 +94,10 @@ ok "random calls"
 cp "$lib/libasperity.so" "$work/another_copy.so"
 "$work/loading" "$lib/libasperity.so" "$work/another_copy.so"
 ok "loaded twice, closed while it plays, forked"
+# shellcheck disable=SC2086
+gcc -std=c99 -pedantic $strict -fsanitize=address,undefined $found tests/torture.c "$lib/libasperity.a" -o "$work/torture_asan" -lm -lpthread -ldl
+"$work/torture_asan" 400
+ok "host torture under the address sanitizer: any block, other rates, threads in turn, two engines, unloaded while they play"
 [ "$tier" = 2 ] || exit 0
 
 (cd "$root" && cargo test --release -q -p asperity-c)
@@ -129,6 +133,7 @@ for program in hostile fuzz replay; do
 done
 sanitized() {
     "$work/hostile_asan"
+    "$work/torture_asan" 400
     "$work/fuzz_asan" "$1" "$2"
     "$work/replay_asan" tests/replay.toml tests/replay.jsonl 0.5 "$work/asan.f32" 512
 }
@@ -140,7 +145,7 @@ if [ "${SANITIZE:-}" = 1 ]; then
         --crate-type staticlib --target x86_64-unknown-linux-gnu --target-dir "$target/sanitized")
     built="$target/sanitized/x86_64-unknown-linux-gnu/release/libasperity_c.a"
     # shellcheck disable=SC2086
-    for program in hostile fuzz replay; do
+    for program in hostile fuzz replay torture; do
         gcc -std=c99 $strict -fsanitize=address $found tests/$program.c "$built" -o "$work/${program}_asan" -lm -lpthread -ldl
     done
     sanitized 20000 1000

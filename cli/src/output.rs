@@ -198,19 +198,27 @@ pub fn with_suffix(stem: &Path, suffix: &str) -> PathBuf {
 
 /// Writes text to stdout; a closed pipe is the reader's choice, not an error.
 pub fn say(text: &str) {
+    let _ = print(text);
+}
+
+fn print(text: &str) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    let _ = writeln!(out, "{text}").and_then(|()| out.flush());
+    writeln!(out, "{text}").and_then(|()| out.flush())
 }
 
 /// Prints one JSON object to stdout.
 ///
 /// # Errors
-/// When the value cannot be written as JSON.
+/// When the value cannot be written as JSON, or there is no room for it.
 pub fn say_json(value: &impl serde::Serialize) -> Result<(), CliError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| CliError::new("--json", error, "please report it with the input"))?;
-    say(&text);
-    Ok(())
+    match print(&text) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(CliError::write(Path::new("stdout"), &error))
+        }
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod demo;
 mod export;
 mod fit;
 mod from_stroke;
+mod full_disk;
 mod haptic;
 mod hostile;
 mod house;

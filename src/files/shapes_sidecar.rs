@@ -152,6 +152,14 @@ mod tests {
     }
 
     #[test]
+    fn a_place_that_a_glb_would_write_as_infinite_is_refused() {
+        let mut shapes = (*tetra().shapes.unwrap()).clone();
+        shapes.points_m[0][1] = 1e63;
+        let refused = shapes_from_bytes(&shapes_to_bytes(&shapes), 2).unwrap_err();
+        assert!(refused.contains("1000 km"), "{refused}");
+    }
+
+    #[test]
     fn a_damaged_or_missing_file_of_shapes_is_refused_by_name() {
         let (text, bytes) = tetra().to_json_beside("mug.shapes").unwrap();
         let refused = |bytes: Option<Vec<u8>>| {

@@ -162,6 +162,16 @@ mod tests {
     }
 
     #[test]
+    fn a_port_for_any_number_of_records_holds_at_least_as_many() {
+        for records in 1..10 {
+            let (mut writer, mut reader) = ring(records, 2);
+            writer.write(0..2 * records as u32);
+            assert_eq!(read(&mut reader, 100), Vec::from_iter(0..2 * records as u32));
+            assert_eq!(reader.lost(), 0, "{records}");
+        }
+    }
+
+    #[test]
     fn a_block_that_is_longer_than_a_port_holds_leaves_its_newest_samples() {
         let (mut writer, mut reader) = ring(8, 1);
         writer.write(0..21);

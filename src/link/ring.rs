@@ -52,3 +52,21 @@ impl<T> Receiver<T> {
         self.0.get_mut().pop().ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_ring_hands_back_what_does_not_fit_and_says_how_much_does() {
+        let (mut sender, mut receiver) = channel(3);
+        assert_eq!((sender.capacity(), sender.free(), receiver.peek()), (3, 3, None));
+        assert_eq!([1, 2, 3, 4].map(|item| sender.send(item)), [Ok(()), Ok(()), Ok(()), Err(4)]);
+        assert_eq!((sender.capacity(), sender.free(), receiver.peek()), (3, 0, Some(&1)));
+        assert_eq!([receiver.receive(), receiver.receive()], [Some(1), Some(2)]);
+        assert_eq!((sender.free(), receiver.peek()), (2, Some(&3)));
+        #[cfg(feature = "device")]
+        assert_eq!(receiver.waiting(), 1);
+        assert_eq!([receiver.receive(), receiver.receive()], [Some(3), None]);
+    }
+}

@@ -166,3 +166,25 @@ impl Counters {
         self.load_bits.store(load.to_bits(), Relaxed);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_contacts_count_adds_up_each_in_its_own_place() {
+        let mut counts = Counts { collisions: 1, shortened: 2, resets: 3, blows: 4 };
+        counts += Counts { collisions: 10, shortened: 20, resets: 30, blows: 40 };
+        let counters = Counters::new(2);
+        counters.count(counts);
+        counters.count(counts);
+        Counters::add(&counters.events, 7);
+        counters.set_load(0.25);
+        counters.bus_peak_bits[1].store(0.5f32.to_bits(), Relaxed);
+        let told = counters.snapshot();
+        let contacts =
+            [told.micro_collisions, told.shortened_collisions, told.quarantined, told.blows, told.events];
+        assert_eq!((contacts, told.load), ([22, 44, 66, 88, 7], 0.25));
+        assert_eq!((told.bus_levels.buses, &told.bus_levels.peaks[..2]), (2, &[0.0, 0.5][..]));
+    }
+}

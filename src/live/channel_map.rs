@@ -47,7 +47,9 @@ impl ChannelMap {
     /// # Errors
     /// When a part is unknown, a channel is no number below 256, or two signals share a channel.
     pub fn parse(text: &str) -> Result<Self, ChannelMapError> {
-        let refuse = |problem| ChannelMapError { text: text.into(), problem };
+        // On one line, however many the text has.
+        let told = || text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let refuse = |problem| ChannelMapError { text: told(), problem };
         if text.trim() == "dualsense" {
             return Ok(Self::dualsense());
         }
@@ -192,9 +194,9 @@ mod tests {
 
     #[test]
     fn impossible_maps_are_refused_with_an_example() {
-        for text in ["", "audio", "audio=x", "video=1", "audio=0 haptic=0", "audio=300"] {
+        for text in ["", "audio", "audio=x", "video=1", "audio=0 haptic=0", "audio=300", "audio=1\n,\nx"] {
             let message = ChannelMap::parse(text).unwrap_err().to_string();
-            assert!(message.contains("audio=0,1 haptic=2,3"), "{message}");
+            assert!(message.contains("audio=0,1 haptic=2,3") && message.lines().count() == 1, "{message}");
         }
     }
 

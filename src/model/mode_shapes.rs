@@ -7,6 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Furthest place of a body from its origin, m: single precision, as a `.glb` has it, still says it.
+const FARTHEST_M: f64 = 1e6;
 /// Most points of a triangulation.
 const MOST_POINTS: usize = 1_000_000;
 
@@ -81,6 +83,9 @@ impl ModeShapes {
             return Err(format!(
                 "shapes.phi_per_sqrt_kg[{m}]: must have one entry for each of the {points} points"
             ));
+        }
+        if self.points_m.iter().flatten().any(|x| x.is_finite() && x.abs() > FARTHEST_M) {
+            return Err("shapes.points_m: a place is more than 1000 km away; must be in metres".to_owned());
         }
         let finite = self.points_m.iter().flatten().chain(&self.gains).all(|x| x.is_finite())
             && self.phi_per_sqrt_kg.iter().flatten().flatten().all(|x| x.is_finite());

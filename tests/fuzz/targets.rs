@@ -1,17 +1,62 @@
 //! Fuzz targets, which must survive any bytes: reading them, and using whatever they are taken for.
-//! A target panics when it finds a fault.
+//! A target panics when it finds a fault. What each door is given first lies in `seeds/`.
 #![allow(dead_code)]
 
+use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, Names};
+use asperity::files::scene_file::SceneFile;
+use asperity::live::channel_map::ChannelMap;
+use asperity::load::Overrides;
 use asperity::offline::{self, Options};
-use asperity::{Config, Extent, ModalModel, Surface, Wrap};
+use asperity::{ActuatorPreset, Config, Engine, Extent, ModalModel, Scene, Surface, Wrap};
 use asperity_surface::height_map::HeightMap;
 use asperity_surface::image_io::{self, Channel};
+use asperity_surface::picture::{Picture, Samples};
 use asperity_surface::raster::Raster;
 use std::collections::HashMap;
+use std::path::Path;
+
+/// Doors of the engine: a name, and what any bytes do there.
+pub const DOORS: &[(&str, fn(&[u8]))] = &[
+    ("log", log),
+    ("modes", modes),
+    ("shapes", shapes),
+    ("scene", scene),
+    ("parts", parts),
+    ("actuator", actuator),
+    ("channels", channel_map),
+    ("png", image),
+    ("jpeg", image),
+    ("gif", image),
+    ("pgm", image),
+    ("exr", image),
+    ("tiff", image),
+    ("webp", image),
+    ("tga", image),
+    ("bmp", image),
+];
+
+/// Modes that a scene may name.
+const MODES: &str = r#"{"format":"asperity.modes","version":1,"modes":[{"frequency_hz":700,"decay_per_s":9,"amplitude":0.4}]}"#;
 
 /// Longest log that is rendered, s.
 const LONGEST_S: f64 = 2.0;
+
+/// A refusal is one line.
+pub fn one_line(refused: &impl std::fmt::Display) {
+    let text = refused.to_string();
+    assert!(!text.is_empty() && !text.contains('\n'), "an error is one line: {text}");
+}
+
+/// Hands `read` a file of these bytes.
+pub fn as_file(ending: &str, data: &[u8], read: impl FnOnce(&Path)) {
+    let name = format!("asperity-fuzz-{}-{:?}.{ending}", std::process::id(), std::thread::current().id());
+    let path = std::env::temp_dir().join(name);
+    if std::fs::write(&path, data).is_ok() {
+        read(&path);
+        let _ = std::fs::remove_file(&path);
+    }
+}
 
 fn flat() -> Surface {
     let extent = Extent { width_m: 0.1, height_m: 0.1, relief_m: 1.0 };
@@ -73,21 +118,93 @@ pub fn modes(data: &[u8]) {
 
 /// A picture, read and made a map.
 pub fn image(data: &[u8]) {
-    let name = format!("asperity-fuzz-{}-{:?}.png", std::process::id(), std::thread::current().id());
-    let path = std::env::temp_dir().join(name);
-    if std::fs::write(&path, data).is_err() {
+    let picture = match image_io::read_channel(data, Channel::Luma) {
+        Ok(picture) => picture,
+        Err(refused) => return one_line(&refused),
+    };
+    let Raster { width, height, ref values } = picture.raster;
+    assert!(width > 0 && height > 0 && values.len() == width * height);
+    assert!(values.iter().all(|v| v.is_finite()));
+    if values.len() < 1 << 14 {
+        let extent = Extent { width_m: 0.1, height_m: 0.1, relief_m: 1e-3 };
+        HeightMap::new(&picture.debanded(Wrap::Repeat), extent, Wrap::Repeat).expect("a picture is a map");
+    }
+}
+
+/// A scene file, read; and built with what it names, where that is small.
+pub fn scene(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let read = SceneFile::parse(text, Path::new("scene.toml"));
+    let file = match read {
+        Ok(file) => file,
+        Err(refused) => return one_line(&refused),
+    };
+    // Grids of millions of cells take seconds to make.
+    if text.contains("cells") || text.contains("sand") || text.contains("brownian") {
         return;
     }
-    let read = image_io::load_channel(&path, Channel::Luma);
-    let _ = std::fs::remove_file(&path);
-    if let Ok(picture) = read {
-        let Raster { width, height, ref values } = picture.raster;
-        assert!(width > 0 && height > 0 && values.len() == width * height);
-        assert!(values.iter().all(|v| v.is_finite()));
-        if values.len() < 1 << 14 {
-            let extent = Extent { width_m: 0.1, height_m: 0.1, relief_m: 1e-3 };
-            HeightMap::new(&picture.debanded(Wrap::Repeat), extent, Wrap::Repeat)
-                .expect("a picture is a map");
+    let mut files = Memory::new();
+    files.add("tile.modes.json", MODES);
+    let grey = Picture::new(4, 4, Samples::U8((0..16).collect())).expect("sixteen samples");
+    files.add_picture("grey.png", grey);
+    let overrides = Overrides { files: &files, ..Overrides::default() };
+    match Engine::from_scene(&file, &overrides) {
+        Ok(Engine { mut renderer, .. }) => {
+            let (mut haptic, mut audio) = ([0.0; 64], [0.0; 64]);
+            renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+            assert!(haptic.iter().chain(&audio).all(|x| x.is_finite()));
         }
+        Err(refused) => one_line(&refused),
+    }
+}
+
+/// Keys of one body, surface and probe, as bindings take them.
+fn parts(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if text.contains("cells") || text.contains("sand") || text.contains("brownian") {
+        return;
+    }
+    let Engine { mut scene, names, .. } = Config::default().build().expect("the default config is accepted");
+    let files = Memory::new();
+    let overrides = Overrides { files: &files, ..Overrides::default() };
+    match scene.read_body(text, Path::new(""), &overrides) {
+        Ok(body) => drop(scene.add_body(body).expect("a body that was read is accepted")),
+        Err(refused) => one_line(&refused),
+    }
+    match scene.read_surface(text, Path::new(""), None, &names, &overrides) {
+        Ok(read) => drop(scene.add_surface(read.surface).expect("a surface that was read is accepted")),
+        Err(refused) => one_line(&refused),
+    }
+    match Scene::read_probe(text) {
+        Ok(probe) => drop(scene.add_probe(probe)),
+        Err(refused) => one_line(&refused),
+    }
+}
+
+/// Shapes beside a modes file, packed or as `.glb`.
+fn shapes(data: &[u8]) {
+    match asperity::shapes_from_bytes(data, 2) {
+        Ok(shapes) => {
+            for name in ["a.shapes", "a.glb"] {
+                let again = asperity::shapes_from_bytes(&asperity::shapes_to_file(&shapes, name), 2);
+                again.expect("shapes survive their file");
+            }
+        }
+        Err(refused) => one_line(&refused),
+    }
+}
+
+fn actuator(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if let Err(refused) = ActuatorPreset::parse(text, "fuzz.toml") {
+        one_line(&refused);
+    }
+}
+
+fn channel_map(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    match ChannelMap::parse(text) {
+        Ok(map) => assert!(map.width() > 0),
+        Err(refused) => one_line(&refused),
     }
 }

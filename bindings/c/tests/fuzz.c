@@ -6,7 +6,20 @@
 
 static uint64_t state;
 
+#ifdef BYTES_OF_A_FUZZER
+/* The dice are a fuzzer's bytes, as long as there are any. */
+static const uint8_t *dice;
+static size_t dice_left;
+#endif
+
 static uint32_t rnd(uint32_t below) {
+#ifdef BYTES_OF_A_FUZZER
+    if (dice_left >= 2) {
+        uint32_t word = dice[0] | (uint32_t)dice[1] << 8;
+        dice += 2, dice_left -= 2;
+        return word % below;
+    }
+#endif
     state ^= state << 13, state ^= state >> 7, state ^= state << 17;
     return (uint32_t)((state >> 11) % below);
 }
@@ -280,30 +293,51 @@ static void rest(void) {
     }
 }
 
+static void any_call(void) {
+    uint32_t what = rnd(100);
+    if (what < 4)
+        make();
+    else if (what < 20)
+        body_or_surface();
+    else if (what < 45)
+        report();
+    else if (what < 70)
+        render();
+    else if (what < 80)
+        ports_and_players();
+    else
+        rest();
+}
+
+static void free_all(void) {
+    for (int i = 0; i < POOL; i++) {
+        asp_player_stop(players[i], NULL), asp_port_free(ports[i]), asp_renderer_free(renderers[i]), asp_scene_free(scenes[i]);
+        players[i] = NULL, ports[i] = NULL, renderers[i] = NULL, scenes[i] = NULL;
+    }
+}
+
+#ifdef BYTES_OF_A_FUZZER
+void asperity_calls(const uint8_t *data, size_t size);
+void asperity_calls(const uint8_t *data, size_t size) {
+    dice = data, dice_left = size, state = 1;
+    make();
+    while (dice_left > 2)
+        any_call();
+    free_all();
+    memset(ids, 0, sizeof ids);
+}
+#else
 int main(int count, char **words) {
     MUST(count == 3);
     long first = atol(words[1]), sequences = atol(words[2]);
     for (long s = first; s < first + sequences; s++) {
         state = 0x9e3779b97f4a7c15u ^ (uint64_t)s * 0xd1342543de82ef95u;
         make();
-        for (int i = 0; i < 150; i++) {
-            uint32_t what = rnd(100);
-            if (what < 4)
-                make();
-            else if (what < 20)
-                body_or_surface();
-            else if (what < 45)
-                report();
-            else if (what < 70)
-                render();
-            else if (what < 80)
-                ports_and_players();
-            else
-                rest();
-        }
+        for (int i = 0; i < 150; i++)
+            any_call();
     }
-    for (int i = 0; i < POOL; i++)
-        asp_player_stop(players[i], NULL), asp_port_free(ports[i]), asp_renderer_free(renderers[i]), asp_scene_free(scenes[i]);
+    free_all();
     printf("fuzz: %ld calls, %ld refused with a sentence, none crashed\n", calls, refusals);
     return 0;
 }
+#endif

@@ -37,3 +37,26 @@ fn a_block_rendered_by_several_threads_is_whole_and_the_threads_end_with_it() {
     println!("{one} and {two} schedules");
     assert!(one >= 1000 && two >= 1000, "{one} and {two} schedules");
 }
+
+/// Jobs for which the way home has no room yet, while a helper takes those that wait.
+#[test]
+fn more_jobs_than_there_is_room_for_all_come_home() {
+    let count = schedules(3, || {
+        let mut pool = Pool::new(vec![0], 1).unwrap();
+        let (mut room, mut home) = (0, 0);
+        for number in 1..=2 {
+            let mut job = Double(number);
+            while let Err(back) = pool.send(job) {
+                job = back;
+                home += pool.next(&mut room).map_or(0, |done| done.0);
+            }
+            pool.wake();
+        }
+        while let Some(done) = pool.next(&mut room) {
+            home += done.0;
+        }
+        assert_eq!(home, 6);
+    });
+    println!("{count} schedules");
+    assert!(count >= 500, "{count} schedules");
+}

@@ -41,6 +41,25 @@ fn a_port_read_while_it_is_written_gives_whole_records_and_counts_the_rest() {
     assert!(of_one >= 1000 && of_two >= 1000, "{of_one} and {of_two} schedules");
 }
 
+/// Every word is a piece of its own here: a claim is a whole ring ahead of what was published.
+#[test]
+fn a_port_read_while_a_longer_block_passes_through_it_stands_within_what_was_published() {
+    let count = schedules(3, || {
+        let (mut writer, mut reader) = ring(1, 1);
+        let writing = thread::spawn(move || writer.write(1..6));
+        let mut seen = Vec::new();
+        for _ in 0..3 {
+            look(&mut reader, &mut seen);
+        }
+        writing.join().unwrap();
+        look(&mut reader, &mut seen);
+        assert!(seen.is_sorted_by(|a, b| a < b), "out of order: {seen:?}");
+        assert_eq!(seen.len() as u64 + reader.lost(), 5);
+    });
+    println!("{count} schedules");
+    assert!(count >= 1000, "{count} schedules");
+}
+
 #[test]
 fn a_port_that_nobody_reads_any_more_says_so_and_is_left_alone() {
     schedules(3, || {
