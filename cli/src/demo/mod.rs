@@ -14,6 +14,7 @@ mod loudness;
 mod plates;
 mod scenes;
 mod strokes;
+mod touchers;
 
 use crate::error::CliError;
 use crate::fit;
