@@ -198,7 +198,7 @@ parameters! {
             or(contact::FORCE_EXPONENT), changes(Opened);
         RIDGE_M: "ridge_m", "m", limits::probe::RIDGE_M,
             "Width over which skin averages what an acceleration channel without `lowpass_hz` has; 0 = no skin",
-            or(contact::RIDGE_M), from("spacing of the ridges of a fingerprint, about 0.5 mm"), changes(Opened);
+            or(contact::RIDGE_M), from("chosen: a fifth of the 0.5 mm from ridge to ridge of a fingerprint"), changes(Opened);
         TIP_MASS_KG: "tip_mass_kg", "kg", limits::probe::TIP_MASS_KG,
             "Mass of a tip of its own, by which alone it is heard; 0 = none; missing: the preset's", changes(Opened);
         TIP_DAMPING_N_S_M: "tip_damping_n_s_m", "N·s/m", limits::probe::PAD_DAMPING_N_S_M,
