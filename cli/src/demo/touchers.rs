@@ -49,7 +49,7 @@ pub fn scene() -> DemoScene {
         start_s = stroke.last().map_or(start_s, |line| line.t) + PAUSE_S;
         lines.extend(stroke);
     }
-    toml += "[[actuator]]\noutput = \"acceleration\"\nfull_scale = 20.0\n\n[audio]\ngain = 1.0\n";
+    toml += "[[actuator]]\nfull_scale = 0.0005\n\n[audio]\ngain = 1.0\n";
     DemoScene {
         name: "touchers",
         title: "A finger, a nail, a pen, a steel rod",
