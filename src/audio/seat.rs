@@ -177,15 +177,19 @@ impl Seat {
             new_heard_m[..path.len()].copy_from_slice(heard.height_m);
         }
         previous.sample(path, all, noise, &mut old, rough);
-        for i in 0..path.len() {
+        let weight_at = |i: usize| {
             let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
-            let weight = smoothstep((age / self.change_samples).min(1.0));
+            smoothstep((age / self.change_samples).min(1.0))
+        };
+        if let Some(heard) = &mut noise.heard {
+            for (i, (height_m, new_m)) in heard.height_m.iter_mut().zip(new_heard_m).enumerate() {
+                *height_m += weight_at(i) * (new_m - *height_m);
+            }
+        }
+        for i in 0..path.len() {
+            let weight = weight_at(i);
             let blend = |new: &mut f64, old: f64| *new = old + weight * (*new - old);
             blend(&mut out.height_m[i], old.height_m[i]);
-            if let Some(heard) = &mut noise.heard {
-                blend(&mut new_heard_m[i], heard.height_m[i]);
-                heard.height_m[i] = new_heard_m[i];
-            }
             blend(&mut out.gradient[i][0], old.gradient[i][0]);
             blend(&mut out.gradient[i][1], old.gradient[i][1]);
             blend(&mut out.roughness[i], old.roughness[i]);
