@@ -145,9 +145,10 @@ pub use rate::{AtRate, RateError};
 /// Kernels: what happens to one sample.
 pub use asperity_dsp as dsp;
 pub use asperity_dsp::DesignError;
+pub use asperity_dsp::hertz::Elastic;
 /// Contents of [`ContactBlock::contact_samples`]: the pad at one sample.
 pub use asperity_dsp::micro_contact::ContactSample as PadSample;
-pub use asperity_dsp::micro_contact::{Integrator, Probe};
+pub use asperity_dsp::micro_contact::{HeardTip, Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::simd::Isa;

@@ -201,7 +201,20 @@ parameters! {
             or(contact::FORCE_EXPONENT), changes(Opened);
         RIDGE_M: "ridge_m", "m", limits::probe::RIDGE_M,
             "Width over which skin averages what an acceleration channel without `lowpass_hz` has; 0 = no skin",
-            or(contact::RIDGE_M), from("spacing of the ridges of a fingerprint, about 0.5 mm"), changes(Opened);
+            or(contact::RIDGE_M), from("chosen: a fifth of the 0.5 mm from ridge to ridge of a fingerprint"), changes(Opened);
+        TIP_MASS_KG: "tip_mass_kg", "kg", limits::probe::TIP_MASS_KG,
+            "Mass of a tip of its own, by which alone it is heard; 0 = none; missing: the preset's", changes(Opened);
+        TIP_DAMPING_N_S_M: "tip_damping_n_s_m", "N·s/m", limits::probe::PAD_DAMPING_N_S_M,
+            "Resistance of the shaft behind that tip; missing: the preset's, else 15", changes(Opened);
+        TIP_CONTACT_RADIUS_M: "tip_contact_radius_m", "m", limits::probe::TIP_CONTACT_RADIUS_M,
+            "Radius with which that tip touches; missing: the preset's, else `tip_radius_m`", changes(Opened);
+        ASPERITY_RADIUS_M: "asperity_radius_m", "m", limits::probe::TIP_RADIUS_M,
+            "Radius of that tip's asperities, which ride the micro-relief; missing: the preset's, else 5e-5", changes(Opened);
+        FACE_M: "face_m", "m", limits::probe::FACE_M,
+            "Length of a face along the stroke: it rides a map as the ball that bridges it", or(0.0), changes(Opened);
+        ASPERITIES: "asperities", "", limits::probe::ASPERITIES,
+            "N that share the load: strokes sound as 1/√N; missing: 64 of a face, else the preset's",
+            or(contact::FINGER_ASPERITIES), from("of a fingertip, assumed"), changes(Opened);
     }
     /// A haptic channel.
     mod actuator = "actuator" {

@@ -21,8 +21,10 @@ const SPEEDS_M_S: [f64; 3] = [0.04, 0.12, 0.24];
 const FORCES_N: [f64; 3] = [0.3, 1.5, 5.0];
 /// The cell at which levels and spectra are told: 120 mm/s, 1.5 N.
 const REFERENCE: (usize, usize) = (1, 1);
-/// A coarse abrasive paper there, m/s².
-const COARSE_ABRASIVE_M_S2: f64 = 5.0;
+/// Abrasive papers of grit 100, 220 and 320 there, m/s².
+const ABRASIVES_M_S2: [f64; 3] = [6.5, 2.4, 1.5];
+/// Share of friction in what a three-axis sensor measures on such ground, dB: 3 to 5.
+const FRICTION_DB: f64 = 4.0;
 /// Median level of the third octaves from 20 to 400 Hz, dB re their sum.
 const SHAPE_DB: [f64; 14] =
     [-15.5, -14.1, -13.4, -12.3, -11.4, -10.8, -10.1, -10.0, -9.5, -9.5, -10.0, -12.6, -16.2, -22.9];
@@ -167,8 +169,9 @@ fn abrasive(grain_m: f64) -> Surface {
 
 #[test]
 fn coarser_abrasives_shake_a_stylus_more() {
-    // FEPA P60, P120 and P320: 269, 125 and 46 µm.
-    let levels = [269e-6, 125e-6, 46e-6].map(|grain_m| {
+    // FEPA P60, then grit 100, 220 and 320 of the measurement, which gives the last three.
+    let grains_m = [269e-6, 141e-6, 66e-6, 36e-6];
+    let levels = grains_m.map(|grain_m| {
         let cell = (SPEEDS_M_S[REFERENCE.0], FORCES_N[REFERENCE.1]);
         let take = take_over(ABRASIVE_M, "stylus", abrasive(grain_m), cell, Quantity::Acceleration);
         let (level, centroid_hz) =
@@ -176,10 +179,10 @@ fn coarser_abrasives_shake_a_stylus_more() {
         println!("grains of {:.0} µm: {level:.2} m/s², {centroid_hz:.0} Hz", grain_m * 1e6);
         level
     });
-    assert!(levels[0] > levels[1] && levels[1] > levels[2], "{levels:?}");
-    // A three-axis measurement holds what friction shakes, 3 to 5 dB on such ground; a normal force
-    // alone does not.
-    let off_db = 20.0 * (levels[0] / COARSE_ABRASIVE_M_S2).log10();
-    println!("coarse: {off_db:+.1} dB of a published coarse abrasive");
-    assert!((-8.0..8.0).contains(&off_db), "{off_db} dB");
+    assert!(levels.windows(2).all(|pair| pair[0] > pair[1]), "{levels:?}");
+    for (level, measured_m_s2) in levels[1..].iter().zip(ABRASIVES_M_S2) {
+        let off_db = 20.0 * (level / measured_m_s2).log10() + FRICTION_DB;
+        println!("{off_db:+.1} dB of {measured_m_s2} m/s²");
+        assert!((-9.0..8.0).contains(&off_db), "{off_db} dB of {measured_m_s2} m/s²");
+    }
 }

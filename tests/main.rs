@@ -100,3 +100,4 @@ mod threads;
 mod trajectories;
 mod traps;
 mod waves_are_heard;
+mod what_strokes;

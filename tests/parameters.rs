@@ -115,7 +115,9 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
         },
         "probe" | "audio" | "actuator" => {
             let brackets = if parameter.table == "actuator" { ("[[", "]]") } else { ("[", "]") };
-            format!("{}{}{}\n{written}", brackets.0, parameter.table, brackets.1)
+            let of_a_tip = parameter.key.starts_with("tip_") || parameter.key == "asperity_radius_m";
+            let other = if of_a_tip { "preset = \"stylus\"\n" } else { "" };
+            format!("{}{}{}\n{other}{written}", brackets.0, parameter.table, brackets.1)
         }
         "sand" => in_surface(format!("sand = {{ {written} }}")),
         "sand.layers" => {
@@ -225,7 +227,8 @@ fn what_is_not_written_is_as_the_list_says() {
     ];
     let probe = serde_json::to_value(file.probe).unwrap();
     let probe = probe.as_object().unwrap();
-    read.extend(probe.iter().map(|(key, value)| ("probe", key.as_str(), value.as_f64().unwrap())));
+    let numbers = probe.iter().filter(|(key, _)| *key != "tip");
+    read.extend(numbers.map(|(key, value)| ("probe", key.as_str(), value.as_f64().unwrap())));
     for (table, key, value) in &read {
         let parameter =
             asperity::parameters::find(table, key).unwrap_or_else(|| panic!("{table} {key} is not listed"));

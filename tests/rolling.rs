@@ -177,7 +177,7 @@ fn a_wheel_that_spins_on_the_spot_is_heard_the_more_it_slips() {
     // A wheel that rolls, one that is braked, one that spins on its way.
     let [rolls, braked, spins] = [0.0, 1.0, 13.0].map(|slip_m_s| wheel_db(1.0, slip_m_s).0);
     println!("{rolls} {braked} {spins}");
-    assert!(braked > rolls && spins > braked + 10.0);
+    assert!(braked > rolls && spins > braked + 6.0);
     // A wheel that spins is as loud as one that slides as fast, on the same kind of ground.
     let locked = wheel_db(4.0, 4.0).0;
     assert!((levels[1].0 - locked).abs() < 3.0, "{} and {locked}", levels[1].0);

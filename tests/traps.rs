@@ -162,7 +162,8 @@ fn a_smooth_grating_without_a_single_collision_sounds() {
     let take = render(si_config(), grating(2e-3, 5e-5), &log, &Options::default());
     // A finger that is suddenly there at full speed hops once; after that it stays on the surface.
     assert!(take.stats.micro_collisions <= 1, "the pad is expected to stay on the surface");
-    assert!(rms(&take.audio[0]) > 1e-5, "{}", rms(&take.audio[0]));
+    // Sixteen asperities share what one would send.
+    assert!(rms(&take.audio[0]) > 1e-5 / 4.0, "{}", rms(&take.audio[0]));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::common;
 
 use asperity::files::contact_log::Names;
 use asperity::offline::{self, Options};
-use asperity::{Engine, Excitation, ModalModel, Mode, Tap};
+use asperity::{Config, Engine, Excitation, ModalModel, Mode, Probe, Tap};
 use common::plates::surface;
 use common::{SIDE_M, rms, si_config, stroke};
 use std::collections::HashMap;
@@ -40,7 +40,10 @@ impl Tap for Leap {
 }
 
 fn heard(plate: &str, (speed_m_s, force_n): (f64, f64), excitation: Excitation) -> (Vec<f32>, f64) {
-    let Engine { mut scene, renderer, .. } = si_config().build().unwrap();
+    // One asperity, before many share the load.
+    let config = si_config();
+    let probe = Probe { asperities: 1.0, ..config.probe };
+    let Engine { mut scene, renderer, .. } = Config { probe, ..config }.build().unwrap();
     let body = scene.add_body(disc()).unwrap();
     let id = scene.add_surface(surface(plate).body(body).excitation(excitation)).unwrap();
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };

@@ -226,7 +226,10 @@ fn five_scenes_are_felt_alike_on_a_headsets_controller() {
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         // What is struck and bowed is heard: its clip peaks at a thousandth of what the device can.
-        .filter(|name| name.ends_with(".toml") && name != "answering.toml")
+        // Tools land far harder than they are stroked: an envelope of both is the landing's.
+        .filter(|name| {
+            name.ends_with(".toml") && !["answering.toml", "touchers.toml"].contains(&name.as_str())
+        })
         .collect();
     scenes.sort();
     let mut in_band_db = Vec::new();

@@ -124,6 +124,14 @@ pub mod probe {
     pub const TIP_RADIUS_M: Range = Range::new(0.0, 0.1, "0 to 0.1 m, 0 = a point");
     /// Width over which skin averages; 0 is no skin.
     pub const RIDGE_M: Range = Range::new(0.0, 0.01, "0 to 0.01 m, 0 = no skin");
+    /// Mass of a tip of its own; 0 is none.
+    pub const TIP_MASS_KG: Range = Range::new(0.0, 1.0, "0 to 1 kg, 0 = no tip of its own");
+    /// Radius of contact of a tip of its own.
+    pub const TIP_CONTACT_RADIUS_M: Range = Range::new(1e-6, 0.1, "1e-6 to 0.1 m");
+    /// Length of a face along the stroke; 0 is none.
+    pub const FACE_M: Range = Range::new(0.0, 10.0, "0 to 10 m, 0 = no face");
+    /// Asperities that share the load.
+    pub const ASPERITIES: Range = Range::new(1.0, 1e6, "1 to 1e6");
     /// n of k_m ∝ Fⁿ.
     pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
 }
@@ -334,6 +342,10 @@ mod tests {
             probe::CONTACT_STIFFNESS_N_M,
             probe::LEASH_M,
             probe::TIP_RADIUS_M,
+            probe::TIP_MASS_KG,
+            probe::TIP_CONTACT_RADIUS_M,
+            probe::FACE_M,
+            probe::ASPERITIES,
             probe::FORCE_EXPONENT,
             impact::MASS_KG,
             impact::RADIUS_M,

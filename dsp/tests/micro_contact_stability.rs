@@ -90,6 +90,7 @@ fn random_probes_on_random_surfaces_never_gain_energy_from_a_surface_at_rest() {
             tip_radius_m: 0.0,
             force_exponent: 0.0,
             ridge_m: 0.0,
+            ..Probe::default()
         };
         let rate_hz = range(8e3, 192e3);
         let speed = range(1e-3, 0.5);

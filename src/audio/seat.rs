@@ -14,7 +14,7 @@ use crate::resource::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, InterpolationError, NoisePath, OCTAVES};
 use asperity_surface::height_field::{
-    Finish, HeightField, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, local_concavity_m,
+    Finish, HeightField, MAX_BLOCK, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, local_concavity_m,
 };
 use asperity_surface::height_map::FRICTION;
 use std::any::Any;
@@ -46,7 +46,18 @@ pub(crate) struct Noise<'a> {
     /// Last place of the contact.
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
+    /// Radius of the sphere that rides it, m.
+    pub(crate) tip_radius_m: f64,
     /// Its short waves by themselves, where they are wanted.
+    pub(crate) between: Option<(BetweenQuery, &'a mut ShortWaves)>,
+    /// The heights once more, as a tip of its own rides them.
+    pub(crate) heard: Option<HeardNoise<'a>>,
+}
+
+/// Heights with the micro-noise as another sphere rides it.
+pub(crate) struct HeardNoise<'a> {
+    pub(crate) tip_radius_m: f64,
+    pub(crate) height_m: &'a mut [f64],
     pub(crate) between: Option<(BetweenQuery, &'a mut ShortWaves)>,
 }
 
@@ -154,16 +165,29 @@ impl Seat {
         if self.previous.is_some() {
             // Two surfaces at once are known at samples only.
             noise.between = None;
+            noise.heard.iter_mut().for_each(|heard| heard.between = None);
         }
         let all = path.slopes || self.previous.is_some();
         let Some(current) = &mut self.current else { return };
         current.sample(path, all, noise, out, rough);
         let Some(previous) = &mut self.previous else { return };
         let mut old = SurfaceBlock::default();
+        let mut new_heard_m = [0.0; MAX_BLOCK];
+        if let Some(heard) = &noise.heard {
+            new_heard_m[..path.len()].copy_from_slice(heard.height_m);
+        }
         previous.sample(path, all, noise, &mut old, rough);
-        for i in 0..path.len() {
+        let weight_at = |i: usize| {
             let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
-            let weight = smoothstep((age / self.change_samples).min(1.0));
+            smoothstep((age / self.change_samples).min(1.0))
+        };
+        if let Some(heard) = &mut noise.heard {
+            for (i, (height_m, new_m)) in heard.height_m.iter_mut().zip(new_heard_m).enumerate() {
+                *height_m += weight_at(i) * (new_m - *height_m);
+            }
+        }
+        for i in 0..path.len() {
+            let weight = weight_at(i);
             let blend = |new: &mut f64, old: f64| *new = old + weight * (*new - old);
             blend(&mut out.height_m[i], old.height_m[i]);
             blend(&mut out.gradient[i][0], old.gradient[i][0]);
@@ -340,6 +364,9 @@ impl SurfaceSlot {
         if surface.compliance_m_n > 0.0 {
             out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
+        if let Some(heard) = &mut noise.heard {
+            heard.height_m.copy_from_slice(&out.height_m[..n]);
+        }
         if surface.micro_relief_m > 0.0 {
             let bounds_m = noise.bounds_m;
             // Mostly it is the same all along the path, and known without a look at each place.
@@ -349,16 +376,19 @@ impl SurfaceSlot {
                 PowerKind::Full => Some(0.0),
                 PowerKind::EachSample => None,
             };
-            self.overlay.tune(path.tip_radius_m);
             let along = NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m };
-            self.overlay.add(
-                noise.field,
-                &NoiseQuery { path: along, bounds_m, share, power_m2: &out.power.each_m2[..n] },
-                &out.roughness[..n],
-                &mut out.height_m[..n],
-                (&mut *noise.cells, &mut *noise.room),
-                noise.between.as_mut().map(|(way, short)| (*way, &mut **short)),
-            );
+            let query = NoiseQuery { path: along, bounds_m, share, power_m2: &out.power.each_m2[..n] };
+            let (roughness, overlay) = (&out.roughness[..n], &mut self.overlay);
+            let mut ride = |tip_radius_m, height_m: &mut [f64], between: &mut Option<(_, &mut _)>| {
+                overlay.tune(tip_radius_m);
+                let room = (&mut *noise.cells, &mut *noise.room);
+                let between = between.as_mut().map(|(way, short)| (*way, &mut **short));
+                overlay.add(noise.field, &query, roughness, height_m, room, between);
+            };
+            ride(noise.tip_radius_m, &mut out.height_m[..n], &mut noise.between);
+            if let Some(HeardNoise { tip_radius_m, height_m, between }) = &mut noise.heard {
+                ride(*tip_radius_m, height_m, between);
+            }
         }
     }
 }

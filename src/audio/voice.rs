@@ -1,8 +1,8 @@
 //! One contact: the signal path of the paper on one screen (Hasti, Fig. 2).
 //!
 //! ```text
-//! path → profile → pad ┬→ coupling → skin → felt ──────────┬→ fades → channel, body
-//!                      └→ coupling, exciters → impulses ───┘
+//! path → profile → pad ┬→ coupling → skin → felt ─────────────────┬→ fades → channel, body
+//!                (tip) └→ coupling, exciters, rolling → impulses ─┘
 //! ```
 //! [`Voice::render`] names the stages in their order; each is a file.
 
@@ -19,6 +19,7 @@ mod profile;
 mod rolling;
 mod skin;
 mod tap;
+mod tip;
 
 pub(crate) use block::{Scratch, VoiceBlock};
 pub(crate) use events::EMPTY_FORCE_N;
@@ -45,6 +46,7 @@ use path::Path;
 use profile::Along;
 use rolling::Rolling;
 use skin::{ContactSkin, Drag};
+use tip::Tip;
 
 /// State of a voice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,8 +83,9 @@ pub(crate) struct Voice {
     cells: TileCells,
     between: Between,
     rolling: Rolling,
-    tip: TipForce,
+    tip_force: TipForce,
     pad: Pad,
+    tip: Tip,
     drag: Drag,
     ac: AcCoupling,
     skin: ContactSkin,
@@ -121,8 +124,9 @@ impl Voice {
             cells: TileCells::default(),
             between: Between::default(),
             rolling: Rolling::default(),
-            tip: TipForce::default(),
+            tip_force: TipForce::default(),
             pad: Pad::idle(&shared.own_probe),
+            tip: Tip::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             skin: ContactSkin::default(),
@@ -133,7 +137,7 @@ impl Voice {
 
     /// A report tells what carries its tip, or that it is pressed, and whether it rolls.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
-        self.tip.carry(sample);
+        self.tip_force.carry(sample);
         self.rolling.tell(sample);
     }
 
@@ -228,6 +232,10 @@ impl Voice {
             self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
         }
         self.sample_between(shared, seat);
+        if let Some(tip) = &probe.tip {
+            let leaves = self.path.is_in_body() || self.rolling.rolls();
+            self.tip.take_slow_step(shared, seat, tip, &self.path.last, leaves);
+        }
     }
 
     /// Path: reports become a point every sample.
@@ -248,30 +256,42 @@ impl Voice {
         let Segment { shared, output, position, n } = stretch;
         let Scratch { points, profile, .. } = scratch;
         let slopes = is_watched || output.quantity() == Quantity::Tangential;
-        let between = self.between.on_the_way(self.path.last.position_m);
-        let along = Along { between, ..self.along(shared, position, slopes) };
+        let from_m = self.path.last.position_m;
+        let between = self.between.on_the_way(from_m);
+        let heard = shared.probe(self.role.probe).tip.as_deref();
+        let heard = heard.map(|tip| (tip.tip_radius_m(), self.tip.between.on_the_way(from_m)));
+        let along = Along { between, heard, ..self.along(shared, position, seat, slopes) };
         profile.run(seat, along, &points[..n], &mut self.cells);
-        self.rolling.run((position, shared.slow_step), &mut profile.surface, n, slopes);
+        let heard_m = heard.map(|_| &mut profile.heard.height_m);
+        self.rolling.run((position, shared.slow_step), (&mut profile.surface, heard_m), n, slopes);
     }
 
-    /// Pad: heights and forces become rows.
+    /// Pad: heights and forces become rows; a tip of its own has rows of its own.
     fn run_pad(&mut self, Segment { shared, n, .. }: Segment<'_>, scratch: &mut Scratch) {
-        let Scratch { profile, quartic_correction, rows, out, .. } = scratch;
+        let Scratch { profile, quartic_correction, rows, heard, out, .. } = scratch;
+        let probe = shared.probe(self.role.probe);
         let ground = self.between.ground(shared, &profile.short, n, quartic_correction);
         let (heights_m, rows) = (&profile.surface.height_m[..n], &mut rows[..n]);
         self.pad.run(heights_m, &profile.force_n[..n], ground, rows);
         if let Some(roughness) = profile.surface.roughness[..n].last() {
             self.between.roughness = *roughness;
         }
-        self.pad.settle(shared.probe(self.role.probe).waits, rows, &mut out.counts);
+        self.pad.settle(probe.waits, rows, &mut out.counts);
+        if let Some(tip) = &probe.tip {
+            let (forces_n, heard) = (&profile.force_n[..n], &mut heard[..n]);
+            self.tip.run((shared, tip), &profile.heard, forces_n, quartic_correction, heard, &mut out.counts);
+        }
     }
 
     /// Coupling: the pad's motion becomes what is felt, the contact force what is heard.
     fn couple(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Segment { shared, output, position, n } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, profile, force_n_s, out, .. } = scratch;
-        let sounds = slot.surface.excitation.has(Exciter::Force);
+        let Scratch { points, rows, heard: tip_rows, profile, force_n_s, out, .. } = scratch;
+        let has_tip = self.has_tip(shared);
+        // The force of a tip holds its collisions.
+        let excitation = &slot.surface.excitation;
+        let sounds = excitation.has(Exciter::Force) || has_tip && excitation.has(Exciter::Collisions);
         let heard = (&slot.stroking.force_high_pass, if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 });
         let dragged = output.quantity() == Quantity::Tangential;
         let mut felt = &rows[..n];
@@ -282,6 +302,12 @@ impl Voice {
                 self.ac.feel = ContactOutputState::begin(output, from_m, 0.0);
             }
             felt = rows;
+        }
+        if has_tip {
+            for (row, felt) in tip_rows.iter_mut().zip(felt) {
+                (row.pad_m, row.pad_velocity_m_s) = (felt.pad_m, felt.pad_velocity_m_s);
+            }
+            felt = &tip_rows[..n];
         }
         let impulse_n_s = &mut force_n_s[FORCE_HISTORY..][..n];
         self.ac.run(output, heard, felt, &mut out.haptic[..n], impulse_n_s);
@@ -295,12 +321,13 @@ impl Voice {
     fn excite(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Segment { shared, position, n, .. } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, force_n_s, out, .. } = scratch;
+        let Scratch { points, rows, heard, force_n_s, out, .. } = scratch;
         let (points, rows) = (&points[..n], &rows[..n]);
         let (slow_step, sample_rate_hz) = (shared.slow_step, shared.sample_rate_hz);
         let (probe, reaction) = (shared.probe(self.role.probe), self.reaction);
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
-        self.exciters.run(&by, rows, force_n_s, out);
+        let heard = if probe.tip.is_some() { &heard[..n] } else { rows };
+        self.exciters.run(&by, heard, force_n_s, out);
         self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(slot, points, rows, &mut out.rub);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);

@@ -13,7 +13,7 @@ use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use crate::model::stock::Stock;
 use crate::model::surface::Surface;
-use crate::resource::stroking::elastic;
+
 use crate::resource::surface::{StrokeLevel, SurfaceLevels};
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::micro_contact::Probe;
@@ -147,7 +147,7 @@ fn followed(periods: f64) -> f64 {
 
 /// Duration of the reference strike on a body of this material, s.
 fn reference_time_s(material: Material) -> f64 {
-    let [steel, body] = [Material::STEEL, material].map(elastic);
+    let [steel, body] = [Material::STEEL, material].map(|material| material.elastic());
     HertzContact::new(&steel, &body, STRIKE.radius_m, STRIKE.mass_kg)
         .map_or(SHORTEST_S, |contact| contact.contact_time_s(STRIKE.speed_m_s))
 }

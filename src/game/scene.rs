@@ -72,8 +72,8 @@ pub struct Scene {
     pub(crate) bodies: Places<KnownBody>,
     pub(crate) probes: Places<Probe>,
     pub(crate) open_ports: usize,
-    /// Radii of the tips that surfaces get ready for, m.
-    pub(crate) tips_m: Vec<f64>,
+    /// Probes whose ways of riding surfaces get ready for.
+    pub(crate) rides: Vec<Probe>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     pub(crate) to_audio: Sender<Message>,
@@ -164,7 +164,7 @@ impl Scene {
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
             open_ports: 0,
-            tips_m: vec![config.probe.tip_radius_m],
+            rides: vec![config.probe],
             given: HashMap::new(),
             strike_gain: 1.0,
             levels: Levels::new(trials),
@@ -202,8 +202,10 @@ impl Scene {
         let message = self.prepared_probe(id, &probe)?;
         self.send(message)?;
         self.probes.set(id.0, probe);
-        if !self.tips_m.contains(&probe.tip_radius_m) {
-            self.tips_m.push(probe.tip_radius_m);
+        let rides_as =
+            |known: &Probe| (known.tip_radius_m, known.face_m) == (probe.tip_radius_m, probe.face_m);
+        if !self.rides.iter().any(rides_as) {
+            self.rides.push(probe);
         }
         self.note(|names| LogEdit::AddProbe { probe: names.probe(id), is: probe });
         Ok(id)
@@ -260,10 +262,12 @@ impl Scene {
         levels: SurfaceLevels,
     ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
+        let relief_m = surface.properties().reach_m;
+        let tip_radii_m: Vec<f64> = self.rides.iter().map(|probe| probe.ride_radius_m(relief_m)).collect();
         surface.source.prepare(&Setup {
             sample_rate_hz: self.config.inner_rate_hz(),
             voices: self.config.voices(),
-            tip_radii_m: &self.tips_m,
+            tip_radii_m: &tip_radii_m,
         })?;
         let properties = surface.properties();
         let silent = KnownBody {

@@ -14,6 +14,7 @@ mod presets;
 
 use crate::model::bad_value::{BadValue, within};
 use asperity_dsp::damping::Damping;
+use asperity_dsp::hertz::Elastic;
 use asperity_dsp::limits::{self, material as range};
 
 /// Material of a thing.
@@ -133,6 +134,12 @@ impl Material {
     #[must_use]
     pub fn names() -> String {
         Self::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The elastic constants.
+    #[must_use]
+    pub const fn elastic(&self) -> Elastic {
+        Elastic { young_pa: self.young_pa, poisson: self.poisson }
     }
 
     /// Decay of its modes.

@@ -45,7 +45,7 @@ pub(crate) struct Overlay {
 
 /// Tips whose weights are kept; one more takes the place of the oldest, and its weights are worked
 /// out when it comes back.
-const TIPS: usize = 4;
+const TIPS: usize = 8;
 /// Roughness whose relief tells how much room the noise needs: the middle of the scale.
 const ORDINARY: f64 = 0.5;
 

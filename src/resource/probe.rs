@@ -6,12 +6,15 @@
 //! ```
 //! A contact of 6.5 kN/m is not that of a steel tip of 1.6 mm on stone, which Hertz has at 3 MN/m:
 //! it is the tool's own bending and its grip. What strikes the ground without that spring between
-//! is the tip in front of it, and the momentum of the tool behind arrives with the contact force.
+//! is the tip in front of it, and the momentum of the tool behind arrives with the contact force. A
+//! probe that has a [tip of its own](asperity_dsp::micro_contact::HeardTip) is heard by that alone.
 
-use crate::resource::stiffness::StiffnessTable;
+use crate::resource::stiffness::{self, Ground, StiffnessTable};
 use crate::resource::stroking::restitution;
 use asperity_dsp::DesignError;
-use asperity_dsp::micro_contact::{Choice, Integrator, MicroContact, Probe};
+use asperity_dsp::micro_contact::{
+    Choice, EXACT_MAX_STIFFNESS_N_M, HeardTip, Integrator, MicroContact, Probe,
+};
 use asperity_dsp::mobility::Mobility;
 use asperity_dsp::simd::Level;
 
@@ -29,24 +32,21 @@ pub(crate) struct PreparedProbe {
     /// True where its rows come one sample before those of the engine's integrator, and have to
     /// wait.
     pub(crate) waits: bool,
+    /// HeardTip that is heard in its place.
+    pub(crate) tip: Option<Box<PreparedProbe>>,
+    /// The tip that this is, whose contact is Hertz'.
+    hertz: Option<HeardTip>,
 }
 
-/// E* of a hard tip on hard ground, Pa: steel on stone.
-const HARD_PA: f64 = 5e10;
 /// Density of a tip, kg/m³: steel.
 const TIP_KG_M3: f64 = 7800.0;
-/// A contact below this share of Hertz' stiffness at 1 N is a spring of the tool. **Chosen**: the
-/// stylus lies at 0.002, other presets above.
-const OF_THE_TOOL: f64 = 0.03;
 
 /// Mass that collides in a micro-collision, kg.
 pub(crate) fn colliding_kg(probe: &Probe) -> f64 {
-    let radius_m = probe.tip_radius_m;
-    let hertz_n_m = libm::cbrt(6.0 * HARD_PA * HARD_PA * radius_m);
-    if probe.contact_stiffness_n_m >= OF_THE_TOOL * hertz_n_m {
+    if !probe.bends() {
         return probe.pad_mass_kg;
     }
-    let ball_kg = 4.0 / 3.0 * std::f64::consts::PI * libm::pow(radius_m, 3.0) * TIP_KG_M3;
+    let ball_kg = 4.0 / 3.0 * std::f64::consts::PI * libm::pow(probe.tip_radius_m, 3.0) * TIP_KG_M3;
     probe.pad_mass_kg.min(ball_kg)
 }
 
@@ -65,14 +65,37 @@ pub(crate) fn remark(choice: Choice) -> Option<String> {
 }
 
 impl PreparedProbe {
+    /// The probe as it was described.
+    pub(crate) fn described(&self) -> &Probe {
+        self.micro_contact.probe()
+    }
+
     /// Radius of the sphere that rides on surfaces, m.
     pub(crate) fn tip_radius_m(&self) -> f64 {
-        self.micro_contact.probe().tip_radius_m
+        self.described().tip_radius_m
+    }
+
+    /// Part that touches the body: its tip, if it has one of its own.
+    pub(crate) fn touching(&self) -> &Self {
+        self.tip.as_deref().unwrap_or(self)
+    }
+
+    /// Share of a stroke that is heard of asperities that share its load.
+    pub(crate) fn heard_share(&self) -> f64 {
+        libm::sqrt(self.described().asperities).recip()
+    }
+
+    /// Stiffness on its ground under a reported force, N/m.
+    pub(crate) fn stiffness_n_m(&self, ground: &Ground, force_n: f64) -> f64 {
+        match &self.hertz {
+            Some(tip) => tip.stiffness_n_m(ground.modulus_pa()) * libm::cbrt(stiffness::within(force_n)),
+            None => stiffness::stiffness_n_m(self.described(), ground, force_n),
+        }
     }
 
     /// Width over which its skin averages, m; 0 where it has none.
     pub(crate) fn ridge_m(&self) -> f64 {
-        self.micro_contact.probe().ridge_m
+        self.described().ridge_m
     }
 
     /// At the engine's inner rate; `own` is the engine's own probe.
@@ -83,6 +106,13 @@ impl PreparedProbe {
         sample_rate_hz: f64,
         kernel: Level,
     ) -> Result<Self, DesignError> {
+        let prepared = |tip: &HeardTip| {
+            let mut front = probe.heard(tip);
+            front.contact_stiffness_n_m = front.contact_stiffness_n_m.min(EXACT_MAX_STIFFNESS_N_M);
+            let front = Self::new(&front, own, integrator, sample_rate_hz, kernel)?;
+            Ok(Box::new(Self { hertz: Some(*tip), ..front }))
+        };
+        let tip = probe.tip.as_ref().map(prepared).transpose()?;
         let micro_contact = MicroContact::new(probe, integrator, sample_rate_hz)?.on(kernel);
         let colliding_kg = colliding_kg(probe);
         Ok(Self {
@@ -92,6 +122,8 @@ impl PreparedProbe {
             mobility: Mobility::new(probe, sample_rate_hz)?,
             collision_mass_kg: colliding_kg * (1.0 + restitution(probe)),
             contact_time_ratio: libm::pow(colliding_kg / self::colliding_kg(own), 0.4),
+            tip,
+            hertz: None,
         })
     }
 }

@@ -6,7 +6,7 @@ use crate::model::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};
 use crate::resource::stiffness::Ground;
 use asperity_dsp::DesignError;
 use asperity_dsp::butterworth::Butterworth;
-use asperity_dsp::hertz::{Elastic, HertzContact};
+use asperity_dsp::hertz::HertzContact;
 use asperity_dsp::micro_contact::Probe;
 
 /// A sliding contact excites a body only above this share of its lowest mode. Below it the modes
@@ -44,7 +44,7 @@ impl Stroking {
     ) -> Result<Self, DesignError> {
         let (low, high) = FORCE_HIGH_PASS_HZ;
         let cutoff_hz = (FORCE_HIGH_PASS_SHARE * lowest_mode_hz).clamp(low, high);
-        let (exciter, body) = (elastic(EXCITER_MATERIAL), elastic(material));
+        let (exciter, body) = (EXCITER_MATERIAL.elastic(), material.elastic());
         Ok(Self {
             hertz: HertzContact::new(&exciter, &body, EXCITER_RADIUS_M, pad_mass_kg)?,
             ground: Ground::of(material),
@@ -60,9 +60,4 @@ pub(crate) fn restitution(probe: &Probe) -> f64 {
     let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
     let damping = (probe.pad_damping_n_s_m / critical).min(0.999);
     libm::exp(-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt())
-}
-
-/// The elastic constants of a material.
-pub(crate) fn elastic(material: Material) -> Elastic {
-    Elastic { young_pa: material.young_pa, poisson: material.poisson }
 }

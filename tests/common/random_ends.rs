@@ -13,8 +13,8 @@
 
 use asperity::limits;
 use asperity::{
-    ActuatorSettings, ChannelId, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Excitation,
-    Extent, Integrator, PathMode, Probe, Surface, Tap, Wrap,
+    ActuatorSettings, ChannelId, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Elastic,
+    Excitation, Extent, HeardTip, Integrator, PathMode, Probe, Surface, Tap, Wrap,
 };
 use asperity_dsp::rng::Rng;
 use asperity_surface::height_map::HeightMap;
@@ -170,6 +170,18 @@ pub fn outcome(seed: u64) -> Outcome {
         tip_radius_m: 0.0,
         ridge_m: 0.0,
         force_exponent: 0.0,
+        tip: one_of(rng, &[true, false]).then(|| HeardTip {
+            mass_kg: end_of(rng, limits::probe::PAD_MASS_KG),
+            damping_n_s_m: end_of(rng, limits::probe::PAD_DAMPING_N_S_M),
+            material: Elastic {
+                young_pa: end_of(rng, limits::material::YOUNG_PA),
+                poisson: end_of(rng, limits::material::POISSON),
+            },
+            contact_radius_m: end_of(rng, limits::probe::TIP_CONTACT_RADIUS_M),
+            asperity_radius_m: end_of(rng, limits::probe::TIP_RADIUS_M),
+        }),
+        face_m: end_of(rng, limits::probe::FACE_M),
+        asperities: end_of(rng, limits::probe::ASPERITIES),
     };
     let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };
     let integrator =

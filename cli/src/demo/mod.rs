@@ -14,6 +14,7 @@ mod loudness;
 pub mod plates;
 pub mod scenes;
 pub mod strokes;
+mod touchers;
 
 use crate::error::CliError;
 use crate::fit;

@@ -16,6 +16,7 @@ pub fn scenes() -> Vec<DemoScene> {
     let mut scenes: Vec<DemoScene> = PLATES.iter().map(plate_scene).collect();
     scenes.push(struck());
     scenes.push(scraped());
+    scenes.push(super::touchers::scene());
     scenes.extend(super::gallery::scenes());
     scenes.push(super::answering::scene());
     scenes.push(super::bowl::scene());

@@ -24,6 +24,9 @@ const PROBE: Probe = Probe {
     tip_radius_m: 0.0,
     leash_m: 5e-3,
     ridge_m: 0.0,
+    tip: None,
+    face_m: 0.0,
+    asperities: 1.0,
 };
 
 /// Response of a contact to heights at this rate.

@@ -52,6 +52,7 @@ const SLOWEST_M_S: f64 = 1e-9;
 
 /// Elastic constants of a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Elastic {
     /// Young's modulus, Pa.
     pub young_pa: f64,
@@ -60,6 +61,12 @@ pub struct Elastic {
 }
 
 impl Elastic {
+    /// E/(1 − ν²), Pa.
+    #[must_use]
+    pub fn modulus_pa(&self) -> f64 {
+        self.young_pa / (1.0 - self.poisson * self.poisson)
+    }
+
     /// (1 − ν²)/E, 1/Pa.
     fn compliance_per_pa(&self) -> Result<f64, DesignError> {
         let young = DesignError::check("young_pa", self.young_pa, "above 0 Pa", |e| e > 0.0)?;

@@ -49,17 +49,19 @@ mod quartic_correction;
 mod semi_implicit;
 mod state;
 mod stiffening;
+mod tip;
 
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
 pub use probe::{
-    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
-    PAD_STIFFNESS_N_M, Probe, RIDGE_M,
+    CONTACT_STIFFNESS_N_M, FINGER_ASPERITIES, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M,
+    PAD_MASS_KG, PAD_STIFFNESS_N_M, Probe, RIDGE_M,
 };
 pub use quartic_correction::{QuarticCorrection, QuarticCorrections, SubSampleProfile};
 pub use state::{ContactSample, ContactState, Onset};
 pub use stiffening::RUNGS_AN_OCTAVE;
+pub use tip::HeardTip;
 
 use crate::DesignError;
 use crate::simd::{Level, at_level};

@@ -48,17 +48,22 @@ impl Voice {
         self.fades.begin(self.role.gain, lands, shared);
         self.between = Default::default();
         let force_n = self.path.begin(sample, slot, stamp);
-        self.tip = TipForce::begin(sample);
+        self.tip_force = TipForce::begin(sample);
         self.rolling.tell(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
         seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });
-        self.pad.begin(shared.probe(self.role.probe), ground, force_n);
+        let probe = shared.probe(self.role.probe);
+        self.pad.begin(probe, ground, force_n);
+        if let Some(tip) = &probe.tip {
+            self.tip.begin(tip, ground, force_n);
+        }
         self.drag.begins = true;
         self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
-            let along = self.along(shared, position, false);
+            let heard = probe.tip.as_ref().map(|tip| (tip.tip_radius_m(), None));
+            let along = Along { heard, ..self.along(shared, position, seat, false) };
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
             self.between.roughness = scratch.profile.surface.roughness[0];
@@ -66,7 +71,11 @@ impl Voice {
             let Profile { surface, rough, .. } = &mut scratch.profile;
             self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
-            self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
+            let later = 1.0 + stamp.fraction();
+            self.pad.land(height_m, force_n, sample.closing_m_s, later);
+            if probe.tip.is_some() {
+                self.tip.land(scratch.profile.heard.height_m[0], force_n, sample.closing_m_s, later);
+            }
             self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
         } else {
             self.preroll(at, seat, scratch);
@@ -75,9 +84,10 @@ impl Voice {
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
         self.skin = ContactSkin::default();
-        let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
         let loudness = self.loudness(shared, position, seat, &mut scratch.profile.rough);
+        // All asperities of a patch land at once, and only as it slides does each sound by itself.
+        let loudness = if lands { loudness / probe.heard_share() } else { loudness };
         self.exciters.begin(contact.0 ^ position.rotate_left(32), position, loudness);
     }
 
@@ -135,7 +145,7 @@ impl Voice {
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
         let between = self.between.on_the_way(from_m);
-        let along = Along { between, ..self.along(at.shared, at.position, false) };
+        let along = Along { between, ..self.along(at.shared, at.position, seat, false) };
         profile.run(seat, along, points, &mut self.cells);
     }
 

@@ -130,7 +130,7 @@ impl Exciters {
 
     /// Sends a collision's pulse on its way, where collisions sound; true where it is shortened.
     fn strike(&mut self, by: &Excited<'_>, onset: &Onset, row: u64) -> bool {
-        if !by.slot.surface.excitation.has(Exciter::Collisions) {
+        if by.probe.tip.is_some() || !by.slot.surface.excitation.has(Exciter::Collisions) {
             return false;
         }
         // An onset is dated within the step that ends at its row, and a force is heard as if that

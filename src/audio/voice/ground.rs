@@ -8,7 +8,6 @@ use crate::audio::seat::Seat;
 use crate::audio::shared::{Segment, Shared};
 use crate::resource::area::{loudness, nestling};
 use crate::resource::rolled_over::RolledOver;
-use crate::resource::stiffness::stiffness_n_m;
 use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::{PathBlock, SurfaceBlock, Touch, TouchKind};
 
@@ -21,13 +20,14 @@ impl Voice {
             return None;
         }
         let slot = seat.current()?;
-        let probe = stretch.shared.probe(self.role.probe).micro_contact.probe();
-        let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
+        let probe = stretch.shared.probe(self.role.probe).touching();
+        let stiffness_n_m = probe.stiffness_n_m(&slot.stroking.ground, force_n);
         let contact_stiffness_n_m = libm::exp2((4.0 * libm::log2(stiffness_n_m)).round() / 4.0);
-        Some(Probe { contact_stiffness_n_m, ..*probe })
+        Some(Probe { contact_stiffness_n_m, ..*probe.described() })
     }
 
-    /// Loudness: grows with force and with how closely the tip nestles to the ground.
+    /// Loudness: grows with force and with how closely the tip nestles to the ground; a face spans
+    /// it.
     pub(super) fn loudness(
         &self,
         shared: &Shared,
@@ -35,10 +35,14 @@ impl Voice {
         seat: &mut Seat,
         room: &mut SurfaceBlock,
     ) -> f64 {
-        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        let touch = self.touch_at(position);
+        let probe = shared.probe(self.role.probe);
+        let loudness = loudness(self.path.last.normal_force_n) * probe.heard_share();
+        if probe.described().face_m > 0.0 {
+            return loudness;
+        }
+        let (tip_radius_m, touch) = (probe.tip_radius_m(), self.touch_at(position));
         let local_concavity_m = |reach_m| seat.local_concavity_m(&touch, (reach_m, tip_radius_m), room);
-        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, local_concavity_m)
+        loudness * nestling(tip_radius_m, local_concavity_m)
     }
 
     /// Hands the ground under its last sample to what rolls.
@@ -66,11 +70,25 @@ impl Voice {
     }
 
     /// Request for its profile.
-    pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
+    pub(super) fn along<'a>(
+        &self,
+        shared: &'a Shared,
+        position: u64,
+        seat: &Seat,
+        slopes: bool,
+    ) -> Along<'a> {
         let (contact, first_sample) = (self.slot, position);
-        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let probe = shared.probe(self.role.probe).described();
+        let relief_m = seat.current().map_or(0.0, |slot| slot.properties.reach_m);
+        let tip_radius_m = probe.ride_radius_m(relief_m);
         let block = PathBlock { contact, first_sample, slopes, tip_radius_m, ..PathBlock::default() };
-        Along { shared, block, in_body: self.path.is_in_body(), between: None }
+        let micro_radius_m = probe.tip_radius_m;
+        Along { shared, block, micro_radius_m, in_body: self.path.is_in_body(), between: None, heard: None }
+    }
+
+    /// Tests whether its probe is heard by a tip of its own.
+    pub(super) fn has_tip(&self, shared: &Shared) -> bool {
+        shared.probe(self.role.probe).tip.is_some()
     }
 
     /// Touch at its last sample.
@@ -102,6 +120,7 @@ impl Voice {
             && self.path.is_still()
             && self.skin.is_still()
             && self.pad.is_settled(&row)
+            && (!self.has_tip(stretch.shared) || self.tip.is_settled(&scratch.heard[n - 1]))
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.wakes_contact
             && !scratch.out.rub.rubs

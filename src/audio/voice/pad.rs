@@ -4,7 +4,7 @@
 use super::PadSample;
 use crate::link::stats::Counts;
 use crate::resource::probe::PreparedProbe;
-use crate::resource::stiffness::{Ground, stiffness_n_m};
+use crate::resource::stiffness::Ground;
 use asperity_dsp::micro_contact::{ContactState, MicroContact, Probe, SubSampleProfile};
 
 /// A contact force so many times what presses is a blow: a heavy or stiff probe comes down from a
@@ -53,8 +53,7 @@ impl Pad {
         let now = (force_n, ground);
         if self.stiff_for != Some(now) {
             self.stiff_for = Some(now);
-            let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &ground, force_n);
-            probe.stiffness_table.set(&mut self.model, stiffness_n_m);
+            probe.stiffness_table.set(&mut self.model, probe.stiffness_n_m(&ground, force_n));
         }
     }
 
@@ -71,6 +70,14 @@ impl Pad {
         self.state = self.model.landing_later(height_m, force_n, closing_m_s, later);
         let pad_velocity_m_s = -closing_m_s;
         self.late_row = PadSample { height_m, pad_m: height_m, pad_velocity_m_s, ..PadSample::default() };
+        self.resets_told = self.state.resets();
+    }
+
+    /// Is there, at rest on its ground.
+    pub(super) fn appear(&mut self, height_m: f64, force_n: f64) {
+        self.state = self.model.at_rest(height_m, force_n);
+        self.late_row =
+            PadSample { height_m, pad_m: height_m, contact_force_n: force_n, ..PadSample::default() };
         self.resets_told = self.state.resets();
     }
 

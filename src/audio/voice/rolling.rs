@@ -27,7 +27,8 @@ pub(super) struct Rolling {
     roughness: f64,
     filter: RollingFilter,
     force: RollingForce,
-    ride: RollingState,
+    /// Ride of what is felt, and of a tip of its own.
+    ride: [RollingState; 2],
     sent: RollingForceState,
 }
 
@@ -44,7 +45,7 @@ impl Rolling {
 
     /// Begins as the newest report says, where the profile begins.
     pub(super) fn begin(&mut self, over: RolledOver<'_>, surface: &SurfaceBlock) {
-        (self.ride, self.roughness) = (RollingState::at(surface.height_m[0]), surface.roughness[0]);
+        (self.ride, self.roughness) = ([RollingState::at(surface.height_m[0]); 2], surface.roughness[0]);
         self.sent = Default::default();
         self.turn(over);
         let share = self.wanted(over.at).unwrap_or(0.0);
@@ -70,24 +71,29 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground become those of the ride, and friction, where it is known, acts on
-    /// what slips; `slow_step` samples lie between two steps of the grid.
+    /// Heights of the ground, and those that a tip of its own rides, become those of the ride, and
+    /// friction, where it is known, acts on what slips; `slow_step` samples lie between two steps
+    /// of the grid.
     pub(super) fn run(
         &mut self,
         (position, slow_step): (u64, u64),
-        surface: &mut SurfaceBlock,
+        (surface, mut heard_m): (&mut SurfaceBlock, Option<&mut [f64; MAX_BLOCK]>),
         n: usize,
         rubbed: bool,
     ) {
         let height_m = &mut surface.height_m[..n];
         self.roughness = surface.roughness[n.saturating_sub(1)];
         if !self.rolls() {
-            self.ride = RollingState::at(height_m.last().copied().unwrap_or_default());
+            self.ride = [RollingState::at(height_m.last().copied().unwrap_or_default()); 2];
             return;
+        }
+        for (height_m, sample) in heard_m.iter_mut().flat_map(|heard_m| &mut heard_m[..n]).zip(position..) {
+            let ride_m = self.ride[1].tick(&self.filter, *height_m);
+            *height_m += share_at(self.share, sample, slow_step) * (ride_m - *height_m);
         }
         for (i, (height_m, friction)) in height_m.iter_mut().zip(&mut surface.friction).enumerate() {
             let share = share_at(self.share, position + i as u64, slow_step);
-            let ride_m = self.ride.tick(&self.filter, *height_m);
+            let ride_m = self.ride[0].tick(&self.filter, *height_m);
             *height_m += share * (ride_m - *height_m);
             if rubbed {
                 *friction *= 1.0 - share;
@@ -120,7 +126,7 @@ impl Rolling {
     /// Softens `n` heights that lie behind a contact that appears.
     pub(super) fn preroll(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
-            self.run((0, MAX_BLOCK as u64), surface, n, true);
+            self.run((0, MAX_BLOCK as u64), (surface, None), n, true);
         }
     }
 }

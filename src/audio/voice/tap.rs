@@ -40,18 +40,19 @@ impl Voice {
             let [u_m, v_m] = point.position_m;
             // The profile of a resting contact is none of its own.
             let before = self.asleep || i < latency;
-            let ground = if before { self.tip.ground } else { Ground::at(&profile.surface, i - latency) };
+            let ground =
+                if before { self.tip_force.ground } else { Ground::at(&profile.surface, i - latency) };
             shown.position_m[count] = point.position_m;
             shown.velocity_m_s[count] = point.velocity_m_s;
             shown.uv[count] = [u_m / slot.surface.width_m, v_m / slot.surface.height_m];
             shown.contact_samples[count] = rows[i];
             shown.impulse_n_s[count] = std::mem::take(&mut self.unshown_n_s);
-            shown.force_n[count] = self.tip.force_n(&point, &rows[i], &ground);
+            shown.force_n[count] = self.tip_force.force_n(&point, &rows[i], &ground);
             shown.cap_n[count] = ground.answer.cap_n;
             count += 1;
         }
         if !self.asleep && n > 0 {
-            self.tip.ground = Ground::at(&profile.surface, n - 1);
+            self.tip_force.ground = Ground::at(&profile.surface, n - 1);
         }
         let actuator = self.role.actuator.map(|channel| ChannelId(channel as u16));
         tap.contact(&shown.block(self.contact, actuator, first_sample, count));

@@ -44,7 +44,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         name,
         modes: fields.file("modes", folder)?,
         stock: read_stock(&mut fields)?,
-        material: read_material(&mut fields)?,
+        material: read_material(&mut fields, "material")?,
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
         diffuse: fields.flag("diffuse")?.unwrap_or(true),
@@ -82,13 +82,13 @@ fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
 
 /// A preset's name, or a table of constants: elastic ones, and what else differs from the default
 /// material.
-fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
-    let table = match fields.take("material") {
+pub(super) fn read_material(fields: &mut Fields, key: &'static str) -> Result<Option<Material>, FileError> {
+    let table = match fields.take(key) {
         None => return Ok(None),
         Some(Value::String(name)) => {
             let unknown = || {
                 let right = format!("must be one of: {}, or a table of constants", Material::names());
-                fields.refuse("material", format!("\"{name}\" is unknown"), right)
+                fields.refuse(key, format!("\"{name}\" is unknown"), right)
             };
             return Material::by_name(&name).map(Some).ok_or_else(unknown);
         }
@@ -96,11 +96,11 @@ fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
         Some(other) => {
             let what = format!("{} is not a material", fields::shown(&other));
             let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
-            return Err(fields.refuse("material", what, right));
+            return Err(fields.refuse(key, what, right));
         }
     };
     use parameters::material as of;
-    let mut fields = Fields::new(table, fields.inner("material"));
+    let mut fields = Fields::new(table, fields.inner(key));
     let young_pa = fields.needed_number(&of::YOUNG_PA)?;
     let poisson = fields.needed_number(&of::POISSON)?;
     let other = Material::new(young_pa, poisson, fields.needed_number(&of::DENSITY_KG_M3)?);

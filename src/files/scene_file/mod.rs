@@ -9,6 +9,7 @@ mod fields;
 mod named_files;
 mod own;
 mod pixels;
+mod probe;
 mod sand;
 mod source;
 mod surface;
@@ -25,7 +26,6 @@ use crate::files::other_file::other_file;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::MAX_BUSES;
-use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::parameters;
 use asperity_dsp::micro_contact::Probe;
 use fields::Fields;
@@ -120,7 +120,7 @@ impl BodyEntry {
 pub fn probe_of(table: toml::Table) -> Result<Probe, FileError> {
     let mut fields = Fields::new(table, "probe");
     fields.text("name")?;
-    read_probe(fields)
+    probe::read(fields)
 }
 
 impl SceneFile {
@@ -183,7 +183,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
         actuators.push(ActuatorEntry::default());
     }
     top.whole("version", 1, 1)?;
-    let (probe, probes) = read_probes(&mut top)?;
+    let (probe, probes) = probe::read_all(&mut top)?;
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
@@ -236,63 +236,6 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
         }
     }
     Ok(())
-}
-
-/// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.
-fn read_probes(top: &mut Fields) -> Result<(Probe, Vec<(String, Probe)>), FileError> {
-    if !top.is_list("probe") {
-        let only = top.table("probe")?.map(read_probe).transpose()?;
-        return Ok((only.unwrap_or_default(), Vec::new()));
-    }
-    let (mut default, mut named) = (None, Vec::<(String, Probe)>::new());
-    for mut fields in top.tables("probe")? {
-        match fields.text("name")? {
-            None if default.is_some() => {
-                let right = "only one probe is the default";
-                return Err(fields.refuse("name", "is missing for the second time", right));
-            }
-            Some(name) if named.iter().any(|(known, _)| *known == name) => {
-                return Err(fields.refuse("name", "is used twice", "give each a name of its own"));
-            }
-            None => default = Some(read_probe(fields)?),
-            Some(name) => {
-                fields.rename(format!("probe \"{name}\""));
-                named.push((name, read_probe(fields)?));
-            }
-        }
-    }
-    Ok((default.unwrap_or_default(), named))
-}
-
-/// A preset, and what differs from it.
-fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
-    let preset = match fields.text("preset")? {
-        None => Probe::default(),
-        Some(name) => probe_by_name(&name).ok_or_else(|| {
-            let known = PROBE_PRESETS.map(|(name, _)| format!("\"{name}\"")).join(", ");
-            let right = format!("must be one of {known}, or write the fields");
-            fields.refuse("preset", format!("\"{name}\" is unknown"), right)
-        })?,
-    };
-    // A stiffness that is written is one, whatever presses.
-    let constant = fields.has("contact_stiffness_n_m");
-    let force_exponent = if constant { 0.0 } else { preset.force_exponent };
-    let probe = Probe {
-        pad_mass_kg: fields.number_or(&parameters::probe::PAD_MASS_KG, preset.pad_mass_kg)?,
-        pad_stiffness_n_m: fields
-            .number_or(&parameters::probe::PAD_STIFFNESS_N_M, preset.pad_stiffness_n_m)?,
-        pad_damping_n_s_m: fields
-            .number_or(&parameters::probe::PAD_DAMPING_N_S_M, preset.pad_damping_n_s_m)?,
-        finger_mass_kg: fields.number_or(&parameters::probe::FINGER_MASS_KG, preset.finger_mass_kg)?,
-        contact_stiffness_n_m: fields
-            .number_or(&parameters::probe::CONTACT_STIFFNESS_N_M, preset.contact_stiffness_n_m)?,
-        leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
-        tip_radius_m: fields.number_or(&parameters::probe::TIP_RADIUS_M, preset.tip_radius_m)?,
-        force_exponent: fields.number_or(&parameters::probe::FORCE_EXPONENT, force_exponent)?,
-        ridge_m: fields.number_or(&parameters::probe::RIDGE_M, preset.ridge_m)?,
-    };
-    fields.finish()?;
-    Ok(probe)
 }
 
 fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {

@@ -292,3 +292,25 @@ fn excitation_is_a_word_or_a_list_of_exciters() {
         );
     }
 }
+
+#[test]
+fn a_tip_of_its_own_is_read_with_what_its_preset_says_and_a_part_of_one_is_refused() {
+    let read = |keys: &str| SceneFile::parse(&format!("[probe]\n{keys}"), Path::new("s.toml"));
+    let probe = |keys: &str| read(keys).unwrap().probe;
+    let steel = probe("preset = \"stylus\"\ntip_material = \"steel\"\nasperity_radius_m = 2e-5");
+    let tip = steel.tip.unwrap();
+    assert_eq!((tip.mass_kg, tip.material.young_pa, tip.asperity_radius_m), (5e-4, 200e9, 2e-5));
+    assert_eq!(probe("preset = \"stylus\"\ntip_mass_kg = 0.0").tip, None);
+    let own = probe("tip_mass_kg = 1e-3\ntip_radius_m = 1e-3").tip.unwrap();
+    assert_eq!((own.mass_kg, own.contact_radius_m, own.damping_n_s_m), (1e-3, 1e-3, 15.0));
+    let crate_of_wood = probe("preset = \"rigid\"\nface_m = 0.4");
+    assert_eq!((crate_of_wood.face_m, crate_of_wood.asperities), (0.4, 64.0));
+    for (keys, message) in [
+        ("tip_damping_n_s_m = 3.0", "probe: tip_damping_n_s_m: stands without tip_mass_kg"),
+        ("tip_mass_kg = 1e-3\ntip_material = \"cheese\"", "probe: tip_material: \"cheese\" is unknown"),
+        ("face_m = 11.0", "probe: face_m: 11.0 is refused"),
+    ] {
+        let error = read(keys).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}

@@ -14,7 +14,7 @@ use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::LONGEST_CONTACT_S;
 use crate::resource::strike_point::StrikePoint;
-use crate::resource::stroking::elastic;
+
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
 use std::sync::atomic::Ordering::Relaxed;
@@ -270,8 +270,12 @@ impl Scene {
     pub(super) fn pulse(&self, impact: &Impact) -> Option<HertzPulse> {
         let known = self.bodies.get(impact.body.0);
         let material = known.map_or(Body::DEFAULT_MATERIAL, |body| body.material);
-        let contact =
-            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg);
+        let contact = HertzContact::new(
+            &impact.striker.elastic(),
+            &material.elastic(),
+            impact.radius_m,
+            impact.mass_kg,
+        );
         let contact_time_s = contact.ok()?.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S);
         Some(HertzPulse { impulse_n_s: impact.impulse_n_s(), contact_time_s })
     }
