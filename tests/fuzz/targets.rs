@@ -66,7 +66,7 @@ fn flat() -> Surface {
 
 /// Renders a log on a body and demands numbers.
 fn render(model: ModalModel, log: &ContactLog) {
-    let asperity::Engine { mut scene, renderer, .. } =
+    let Engine { mut scene, renderer, .. } =
         Config::default().build().expect("the default config is accepted");
     let Ok(body) = scene.add_body(model) else { return };
     let surface = scene.add_surface(flat().body(body)).expect("a surface that is accepted");

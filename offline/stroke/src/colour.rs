@@ -43,7 +43,7 @@ pub struct Parted {
 
 /// Prior of S: dB for a second difference.
 const KINK_DB: f64 = 1.0;
-/// The same where nothing has to be told apart.
+/// Prior of S where nothing has to be told apart.
 const LOOSE_KINK_DB: f64 = 6.0;
 /// Prior of C: dB, octaves, dB an octave.
 const COLOUR_DB: f64 = 5.0;

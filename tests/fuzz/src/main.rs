@@ -10,6 +10,12 @@ mod engine;
 #[allow(dead_code)]
 mod error;
 #[cfg(feature = "offline")]
+#[allow(dead_code)]
+mod export {
+    #[path = "../../../../cli/src/export/binary.rs"]
+    pub mod binary;
+}
+#[cfg(feature = "offline")]
 mod files;
 #[cfg(feature = "offline")]
 mod fit;
@@ -23,6 +29,10 @@ mod import;
 mod output;
 #[cfg(feature = "offline")]
 mod program;
+#[cfg(feature = "offline")]
+#[path = "../../../cli/src/unwrap.rs"]
+#[allow(dead_code)]
+mod unwrap;
 
 /// What the import of glTF asks of the verb that makes modes.
 #[cfg(feature = "offline")]

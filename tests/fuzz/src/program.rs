@@ -5,6 +5,7 @@ use crate::engine::{as_file, one_line};
 use crate::fit::import::{self as table, Missing};
 use crate::import;
 use asperity::files::scene_file::SceneFile;
+use crate::unwrap::UnwrapOptions;
 use document::Document;
 use std::path::Path;
 
@@ -31,8 +32,13 @@ fn scene_of_gltf(data: &[u8]) {
     as_file("gltf", data, |path| {
         let output = path.with_extension("d");
         let material = "ceramic".to_owned();
-        let options =
-            import::Options { document: path.to_owned(), output: output.clone(), material, json: false };
+        let options = import::Options {
+            document: path.to_owned(),
+            output: output.clone(),
+            material,
+            unwrap: UnwrapOptions::default(),
+            json: false,
+        };
         match import::run(&options) {
             Ok(()) => drop(SceneFile::load(&output.join("scene.toml")).expect("an import is a scene")),
             Err(refused) => one_line(&refused),
