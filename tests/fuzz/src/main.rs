@@ -11,10 +11,7 @@ mod engine;
 mod error;
 #[cfg(feature = "offline")]
 #[allow(dead_code)]
-mod export {
-    #[path = "../../../../cli/src/export/binary.rs"]
-    pub mod binary;
-}
+mod export;
 #[cfg(feature = "offline")]
 mod files;
 #[cfg(feature = "offline")]

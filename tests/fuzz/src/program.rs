@@ -4,8 +4,8 @@ use crate::Door;
 use crate::engine::{as_file, one_line};
 use crate::fit::import::{self as table, Missing};
 use crate::import;
-use asperity::files::scene_file::SceneFile;
 use crate::unwrap::UnwrapOptions;
+use asperity::files::scene_file::SceneFile;
 use document::Document;
 use std::path::Path;
 
