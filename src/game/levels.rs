@@ -29,6 +29,8 @@ const LOUDEST_STROKE: f64 = 0.1;
 const SPEED_EXPONENT: f64 = 0.4;
 /// Bodies of which the trials are kept.
 const MOST_BODIES: usize = 64;
+/// Surfaces of which the trials are kept, each on the body that it had.
+const MOST_SURFACES: usize = 256;
 /// Impulse of a reference strike, N·s.
 const STRIKE_N_S: f64 = 2.0 * STRIKE.mass_kg * STRIKE.speed_m_s;
 /// Body under a surface that has none, for what is held and rings by strokes on it.
@@ -337,6 +339,10 @@ impl Levels {
             return Ok((surface, trials.clone()));
         }
         let (surface, trials) = (self.trials.of_surface)(config, surface, body, probes)?;
+        // A game that makes surfaces without end measures them anew now and then.
+        if self.surfaces.len() == MOST_SURFACES {
+            self.surfaces.clear();
+        }
         self.surfaces.insert(key, trials.clone());
         Ok((surface, trials))
     }
