@@ -23,11 +23,15 @@ pub mod colour;
 pub mod floor;
 pub mod lines;
 pub mod models;
+pub mod octave_noise;
 pub mod octaves;
+pub mod power_law;
+mod profile;
 pub mod recording;
 pub mod relief;
 pub mod surface;
 pub mod tool;
+mod wander;
 
 pub use recording::{Stroke, Track};
 pub use surface::{Options, StrokeSurface, fit};

@@ -7,9 +7,11 @@ use crate::db;
 use crate::floor::{self, Floor};
 use crate::lines::{self, Line};
 use crate::models::{self, Models};
+use crate::octave_noise;
 use crate::octaves::{self, MicroRelief};
+use crate::power_law::PowerLaw;
 use crate::recording::{Stroke, Window, respond, windows};
-use crate::relief::{self, Group, Octave, PowerLaw, Spectrum};
+use crate::relief::{self, Group, Octave, Spectrum};
 use crate::tool::Tool;
 use asperity_dsp::fractal_noise::OCTAVES;
 
@@ -263,7 +265,7 @@ fn solve(
     let law = PowerLaw::through(&parted.bands, tip_radius_m);
     let spectrum = Spectrum::new(&parted.bands);
     let octaves: Vec<Octave> =
-        (0..OCTAVES).map(|octave| spectrum.octave(octaves::wavelength_m(octave))).collect();
+        (0..OCTAVES).map(|octave| spectrum.octave(octave_noise::wavelength_m(octave))).collect();
     let middle = &groups[0];
     let probe_se_db = octaves
         .iter()
