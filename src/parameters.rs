@@ -154,7 +154,7 @@ parameters! {
         OUTER_SCALE_M: "outer_scale_m", "m", limits::OUTER_SCALE_M,
             "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
         MICRO_RELIEF_OCTAVES_DB: "micro_relief_octaves_db", "dB", limits::OCTAVE_DB,
-            "Gains of the micro-relief's octaves over its law: up to 12 numbers, coarsest first (31.5 mm, halved each)";
+            "Gains of the micro-relief's octaves over its law: up to 12 numbers, coarsest first (31.5 mm, halved each)", vector(12);
         ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or own source's, else its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
         MU_STATIC: "mu_static", "", limits::FRICTION, "With `friction` among `excitation`: coefficient of what sticks",

@@ -11,8 +11,8 @@ use serde_json::json;
 /// Options that unwrap.
 #[derive(Debug, Clone, Args)]
 pub struct UnwrapOptions {
-    /// Also write the mesh with texture coordinates in metres, as glTF: `energy` changes lengths and
-    /// areas least, `smooth` varies most evenly; a mesh with one rim
+    /// Also write the mesh with texture coordinates in metres, as glTF: `energy` changes lengths
+    /// and areas least, `smooth` varies most evenly; a mesh with one rim
     #[arg(long, value_enum, value_name = "METHOD")]
     pub unwrap: Option<Method>,
     /// Weight of lengths beside areas in `--unwrap energy`, 0 to 1

@@ -318,7 +318,7 @@ fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
         ("default", "steep", -80.0, -52.0),
         ("default", "fast", -65.0, -52.0),
         ("default", "light", -70.0, -55.0),
-        ("accurate", "smooth", -105.0, -70.0),
+        ("accurate", "smooth", -105.0, -64.0),
         ("accurate", "bouncing", -95.0, -72.0),
         ("accurate", "steep", -100.0, -70.0),
         ("accurate", "fast", -95.0, -67.0),

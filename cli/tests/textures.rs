@@ -202,7 +202,8 @@ fn a_height_map_is_a_thing_to_hold_of_the_size_told_in_either_format() {
     );
     let exact = 600.0 * (3.0 + 1.5 * (heights.mean() - low));
     assert!((volume / exact - 1.0).abs() < 1e-4 && (number(&made, "volume_mm3") / exact - 1.0).abs() < 1e-12);
-    // The mesh solver reads the other format, and finds it as large; a thing of plastic weighs that.
+    // The mesh solver reads the other format, and finds it as large; a thing of plastic weighs
+    // that.
     make("rough.glb");
     let solve = ["modes", "rough.glb", "--material", "plastic", "--max-modes", "3", "-o", "r.json", "--json"];
     let told = asperity(scene.folder.path(), &solve);

@@ -7,7 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Furthest place of a body from its origin, m: single precision, as a `.glb` has it, still says it.
+/// Furthest place of a body from its origin, m: single precision, as a `.glb` has it, still says
+/// it.
 const FARTHEST_M: f64 = 1e6;
 /// Most points of a triangulation.
 const MOST_POINTS: usize = 1_000_000;

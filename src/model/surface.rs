@@ -252,8 +252,8 @@ impl Surface {
         self
     }
 
-    /// Gains of the overlay's twelve octaves over its law, coarsest first, dB: octave i lies about the
-    /// wavelength 31.5 mm / 2^i.
+    /// Gains of the overlay's twelve octaves over its law, coarsest first, dB: octave i lies about
+    /// the wavelength 31.5 mm / 2^i.
     #[must_use]
     pub fn micro_relief_octaves_db(mut self, gains_db: [f64; OCTAVES]) -> Self {
         self.micro_relief_octaves_db = gains_db;

@@ -13,9 +13,10 @@
 //! | w | flank over the period: a fifth of the narrower of ridge and groove, and no less than two readings |
 //!
 //! Lines run along v; dots sit on squares. Source: regular textures as sums of sines are those of
-//! the solid-noise paper (put several into a [sum](crate::combine::Sum)); gratings and dots by pitch
-//! and duty are the stimuli of studies of roughness. The flank is ours: a wall that stands upright
-//! is a step between two samples. Towards two readings a period the relief fades to its mean.
+//! the solid-noise paper (put several into a [sum](crate::combine::Sum)); gratings and dots by
+//! pitch and duty are the stimuli of studies of roughness. The flank is ours: a wall that stands
+//! upright is a step between two samples. Towards two readings a period the relief fades to its
+//! mean.
 
 use crate::fade::Fade;
 use crate::height_field::{

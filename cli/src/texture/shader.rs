@@ -1,4 +1,5 @@
-//! Shader source of a surface: its heights as functions of WGSL or GLSL (ES 3.00), without uniforms.
+//! Shader source of a surface: its heights as functions of WGSL or GLSL (ES 3.00), without
+//! uniforms.
 //!
 //! One text serves both: `$float n = …` declares a constant there and here. Integers wrap in both
 //! languages, so that lattice points have the engine's hash; fractions are single precision.
@@ -112,7 +113,8 @@ pub fn of_solid(
         "  return sum;\n}}\n\
          // Height, m, at a place of a body that is made of it, m (`at_m` of a contact).\n\
          $fn float #_in_body(vec3 at_m) {{\n  return #_height(at_m.x * {u} + at_m.y * {v} + at_m.z * {n});\n}}\n\
-         // Height, m, at a place of the picture of `asperity texture solid`, m to the right and down.\n\
+         // Height, m, at a place of the picture of `asperity texture solid`, m to the right and
+         // down.\n\
          $fn float #_picture(vec2 at_m) {{\n  return #_height(at_m.x * {u} + at_m.y * {v});\n}}\n"
     );
     finished(&text, name, language)
@@ -136,7 +138,8 @@ pub fn of_grating(name: &str, grating: &GratingParameters, language: Language) -
         "\n// Height, m, at a place of the surface, m; z says nothing.\n\
          $fn float #_height(vec3 at_m) {{\n  $vec3 turns = at_m / {pitch_m:?};\n  \
          $vec3 p = turns - floor(turns + vec3(0.5, 0.5, 0.5));\n{}}}\n\
-         // The same at a place of the picture of `asperity texture solid`, m to the right and down.\n\
+         // The same at a place of the picture of `asperity texture solid`, m to the right and
+         // down.\n\
          $fn float #_picture(vec2 at_m) {{\n  return #_height(vec3(at_m.x, at_m.y, 0.0));\n}}\n",
         level.replace("#_A", &format!("{amplitude_m:?}"))
     );

@@ -1,14 +1,16 @@
-//! Heights as a closed block: for a 3-D printer (binary STL, in millimetres), or as a mesh in metres.
+//! Heights as a closed block: for a 3-D printer (binary STL, in millimetres), or as a mesh in
+//! metres.
 //!
 //! ```text
 //! x = u        y = depth − v        z = base + h(u, v) − lowest h
 //! ```
 //! The top has a vertex at every texel's centre and one at the edge beside every outermost texel,
 //! so that the block is exactly as wide as the map; walls go down to z = 0 and a fan closes the
-//! bottom. Cells of four texels are cut along one diagonal, so that the volume is area × (base + mean
-//! height over the lowest) but for a twelfth of a texel at each corner of the map. Seen from above it looks like the map. STL has no unit; printers read millimetres.
-//! Source: the embodiment of the metamers is an object of known thickness from a 3-D printer that
-//! resolves less than [`FINEST_TEXEL_M`].
+//! bottom. Cells of four texels are cut along one diagonal, so that the volume is area × (base +
+//! mean height over the lowest) but for a twelfth of a texel at each corner of the map. Seen from
+//! above it looks like the map. STL has no unit; printers read millimetres. Source: the embodiment
+//! of the metamers is an object of known thickness from a 3-D printer that resolves less than
+//! [`FINEST_TEXEL_M`].
 //!
 //! ```
 //! use asperity_pictures::stl::Block;

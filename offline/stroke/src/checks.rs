@@ -13,7 +13,8 @@ const LEAST_RATE_HZ: f64 = 200.0;
 const CLIPPED: f64 = 1e-4;
 /// Samples at the extreme in a row that are no coincidence.
 const CLIPPED_RUN: usize = 3;
-/// Force that changes by more of its mean than this lets go of the ground now and then: told, refused.
+/// Force that changes by more of its mean than this lets go of the ground now and then: told,
+/// refused.
 const LIFTS: (f64, f64) = (0.5, 1.0);
 /// Floor over the recording beyond which nothing of the ground is left, dB.
 const BURIED_DB: f64 = -1.0;

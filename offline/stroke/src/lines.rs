@@ -1,9 +1,9 @@
 //! Lines: what repeats along the stroke with one period, as ridges and weaves do.
 //!
-//! The whole stroke is taken back to height, resampled at equal steps of place, and seen through one
-//! Hann window. The floor about a bin is the median of a sixth of an octave over 0.69 (the mean of an
-//! exponential variable over its median); a line stands over it by more than chance gives once in a
-//! hundred strokes.
+//! The whole stroke is taken back to height, resampled at equal steps of place, and seen through
+//! one Hann window. The floor about a bin is the median of a sixth of an octave over 0.69 (the mean
+//! of an exponential variable over its median); a line stands over it by more than chance gives
+//! once in a hundred strokes.
 //!
 //! Where nobody measured the speed sample by sample, its wander smears a line. The phase of the
 //! strongest one, in a band about it that narrows from ± 25 to 8 %, then tells the place: a period
@@ -125,7 +125,8 @@ fn peaks(profile: &Profile) -> Vec<Line> {
         let shift = 0.5 * (a - c) / (a - 2.0 * b + c).min(-1e-12);
         let top = (b - 0.25 * (a - c) * shift).exp();
         let q = (i as f64 + shift) * bin_q;
-        // Noise of a bin counts with the line's own amplitude²; the rest of the third octave beside it.
+        // Noise of a bin counts with the line's own amplitude²; the rest of the third octave beside
+        // it.
         let amplitude = (top - floor).max(0.0).sqrt();
         let third = q * (10f64.powf(0.05) - 10f64.powf(-0.05));
         // A floor of one bin is 4/(length · 1.5) of the density.

@@ -1,5 +1,5 @@
-//! Published models of strokes: XML files of auto-regressive filters over speed and force, as haptic
-//! texture toolkits write them (Culbertson, Lopez Delgado, Kuchenbecker 2014).
+//! Published models of strokes: XML files of auto-regressive filters over speed and force, as
+//! haptic texture toolkits write them (Culbertson, Lopez Delgado, Kuchenbecker 2014).
 //!
 //! ```text
 //! P(f) = 2 σ² g² |MA(e^(−iω)) / AR(e^(−iω))|² / rate

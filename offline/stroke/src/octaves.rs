@@ -1,9 +1,9 @@
 //! Octaves of the engine's micro-relief that give a felt spectrum back.
 //!
-//! The engine adds twelve octaves of gradient noise, each broader than an octave: their own spectra,
-//! read from the noise itself along a line, are weighed so that together they come to the target.
-//! The tip's share is in them already, so a surface plays through the tip that it was felt by as it
-//! was felt.
+//! The engine adds twelve octaves of gradient noise, each broader than an octave: their own
+//! spectra, read from the noise itself along a line, are weighed so that together they come to the
+//! target. The tip's share is in them already, so a surface plays through the tip that it was felt
+//! by as it was felt.
 
 use crate::octave_noise::octave_spectrum;
 use crate::power_law::PowerLaw;

@@ -3,8 +3,8 @@
 //! ```text
 //! S(q) = a² c q^−α, flat beyond the outer scale; each octave less what the tip does not follow
 //! ```
-//! Gauss–Newton over exponent and level for every outer scale, at once or over octaves; an outer scale
-//! has to earn its place.
+//! Gauss–Newton over exponent and level for every outer scale, at once or over octaves; an outer
+//! scale has to earn its place.
 
 use crate::db;
 use crate::octave_noise::{kernel_origin, octave_kernel, wavelength_m};

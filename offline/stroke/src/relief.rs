@@ -98,8 +98,8 @@ pub fn groups(windows: &[Window]) -> Vec<Group> {
         .collect()
 }
 
-/// Levels of the felt height between two frequencies; `lines_q` are wavenumbers of lines, whose bins
-/// do not count. `colour_db` is the response of the rig, where it is known.
+/// Levels of the felt height between two frequencies; `lines_q` are wavenumbers of lines, whose
+/// bins do not count. `colour_db` is the response of the rig, where it is known.
 #[must_use]
 pub fn levels(
     (windows, groups): (&[Window], &[Group]),
@@ -216,9 +216,9 @@ impl<'a> Spectrum<'a> {
         Self { bands }
     }
 
-    /// Level at a place between third octaves, dB re 1 m³: a line between bands; beyond them the slope
-    /// of the last one and a half octaves at the long end, of the last two at the short one, which
-    /// rises no further.
+    /// Level at a place between third octaves, dB re 1 m³: a line between bands; beyond them the
+    /// slope of the last one and a half octaves at the long end, of the last two at the short one,
+    /// which rises no further.
     #[must_use]
     pub fn at(&self, place: f64) -> f64 {
         let bands = self.bands;

@@ -71,7 +71,8 @@ pub(crate) fn hump(profile: &Profile) -> Option<Hump> {
     })
 }
 
-/// Place by the phase of the strongest line: the profile over it, the wander, and the line's period.
+/// Place by the phase of the strongest line: the profile over it, the wander, and the line's
+/// period.
 pub(crate) fn follow(
     height_m: &[f64],
     path_m: &[f64],

@@ -1,4 +1,5 @@
-//! Strokes of known ground: a Gaussian profile, the stylus' contact as a linear filter, white noise.
+//! Strokes of known ground: a Gaussian profile, the stylus' contact as a linear filter, white
+//! noise.
 
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::rng::Rng;

@@ -3,11 +3,11 @@
 //! ```text
 //! gradient n      ridged (1 − |n|)²      billow 2 |n| − 1      turbulence |n|      Voronoi |x − nearest point|
 //! ```
-//! n is gradient noise, x the place in cells, with one point a cell at a random place in it. Source:
-//! the noise paper names libnoise's modules as its next step; turbulence as Perlin (1985), the sum
-//! of |noise| over octaves, Voronoi as Worley (1996), its first distance. Left out of libnoise's
-//! ridged noise: the weight by which an octave fades where the one before it is low. Where an octave
-//! is not resolved it leaves its mean, so that heights do not depend on speed.
+//! n is gradient noise, x the place in cells, with one point a cell at a random place in it.
+//! Source: the noise paper names libnoise's modules as its next step; turbulence as Perlin (1985),
+//! the sum of |noise| over octaves, Voronoi as Worley (1996), its first distance. Left out of
+//! libnoise's ridged noise: the weight by which an octave fades where the one before it is low.
+//! Where an octave is not resolved it leaves its mean, so that heights do not depend on speed.
 
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3};
 use asperity_dsp::rng::hash_u32;

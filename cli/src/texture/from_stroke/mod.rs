@@ -38,7 +38,8 @@ pub struct Options {
     /// Unit of the samples [default: m_s2]
     #[arg(long, value_enum)]
     pub unit: Option<Unit>,
-    /// Columns of the recording; several axes are folded by power [default: all that are nothing else]
+    /// Columns of the recording; several axes are folded by power [default: all that are nothing
+    /// else]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
     /// Column of the force along the surface, N: tells friction

@@ -3,9 +3,9 @@
 //! ```text
 //! R = Σ_k Σ_ν ( Σ_{i ∈ N(k) ∪ {k}} c(i, k) ν_i )²        c(i, k) = 1, c(k, k) = −grad(k)        ν = u, v
 //! ```
-//! The rim lies on a circle as long as it, by its own arc length. What we changed: equation 4.25 has
-//! ν_k inside the sum, which makes R depend on the degrees of the vertices alone; ν_i is meant, as
-//! in 4.24. The conditions of angles and lengths (4.28–4.38) are left to [`super::energy`].
+//! The rim lies on a circle as long as it, by its own arc length. What we changed: equation 4.25
+//! has ν_k inside the sum, which makes R depend on the degrees of the vertices alone; ν_i is meant,
+//! as in 4.24. The conditions of angles and lengths (4.28–4.38) are left to [`super::energy`].
 
 use super::{Sheet, Uv};
 use crate::error::ShapeError;
