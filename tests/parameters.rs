@@ -134,7 +134,14 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
             let other = if parameter.key == "width_m" { "relief_m = 0.01" } else { "width_m = 0.01" };
             in_surface(format!("sand = {{ tool = {{ map = \"t.png\", {written}, {other} }} }}"))
         }
-        "solid" => in_surface(format!("solid = {{ preset = \"wood\", {written} }}")),
+        "solid" => {
+            let of_grating = match parameter.key {
+                "pitch_m" => "\"grating\", kind = \"sine\", amplitude_m = 1e-5",
+                "duty" => "\"grating\", kind = \"ridges\", amplitude_m = 1e-5, pitch_m = 1e-3",
+                _ => "\"wood\"",
+            };
+            in_surface(format!("solid = {{ preset = {of_grating}, {written} }}"))
+        }
         "brownian" => {
             let others =
                 [("hurst", "0.5"), ("rms_m", "1e-4")].into_iter().filter(|(key, _)| *key != parameter.key);
