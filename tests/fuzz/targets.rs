@@ -16,8 +16,11 @@ use asperity_surface::raster::Raster;
 use std::collections::HashMap;
 use std::path::Path;
 
+/// A door's name, and what any bytes do there.
+pub type Door = (&'static str, fn(&[u8]));
+
 /// Doors of the engine: a name, and what any bytes do there.
-pub const DOORS: &[(&str, fn(&[u8]))] = &[
+pub const DOORS: &[Door] = &[
     ("log", log),
     ("modes", modes),
     ("shapes", shapes),

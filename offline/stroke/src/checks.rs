@@ -122,8 +122,9 @@ pub fn lift(windows: &[Window], tool: &Tool, floors: &[Floor]) -> f64 {
     for window in windows.iter().filter(|window| window.speed_m_s >= STANDSTILL_M_S) {
         let floor = &floors[window.stroke].density;
         let (from, to) = ((20.0 / window.bin_hz) as usize, (1000.0 / window.bin_hz) as usize);
-        for i in from..to.min(window.density.len()) {
-            let height = (window.density[i] - floor[i]).max(0.0) / window.response[i].max(f64::MIN_POSITIVE);
+        let bins = window.density.iter().zip(floor).zip(&window.response).enumerate();
+        for (i, ((density, floor), response)) in bins.take(to).skip(from) {
+            let height = (density - floor).max(0.0) / response.max(f64::MIN_POSITIVE);
             changing += height * tool.force_power(i as f64 * window.bin_hz, window.force_n) * window.bin_hz;
         }
         pressed += window.force_n * window.force_n;

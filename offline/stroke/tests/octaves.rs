@@ -13,7 +13,7 @@ fn random(rng: &mut Rng, seed: u64) -> Made {
         force_n: pick(0.3, 3.0),
         alpha: 1.0 + 2.5 * rng.uniform(),
         snr_db: 20.0 + 20.0 * rng.uniform(),
-        ripple: if seed % 2 == 0 { 0.0 } else { 0.1 * rng.uniform() },
+        ripple: if seed.is_multiple_of(2) { 0.0 } else { 0.1 * rng.uniform() },
         seed,
         ..Made::default()
     }
