@@ -2,8 +2,8 @@
 //!
 //! | method | least | by |
 //! |---|---|---|
-//! | [`Method::Energy`] | change of lengths and areas ([`energy`]) | damped Newton steps |
-//! | [`Method::Smooth`] | roughness of u and v over the mesh's graph, the rim held on a circle ([`smooth`]) | one linear solve |
+//! | [`Method::Energy`] | change of lengths and areas (`energy`) | damped Newton steps |
+//! | [`Method::Smooth`] | roughness of u and v over the mesh's graph, the rim held on a circle (`smooth`) | one linear solve |
 //!
 //! Source: the thesis on graphics textures, equations 4.13–4.22 and 4.24–4.27. A surface is one
 //! piece with one rim: whoever has a tube or a closed body cuts it open first.

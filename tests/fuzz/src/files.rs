@@ -24,6 +24,7 @@ pub const DOORS: &[Door] = &[
     ("batch", batch),
     ("manifest", manifest),
     ("photograph", photograph),
+    ("stroke-models", stroke_models),
 ];
 
 /// A recording: samples that are numbers, or the reason.
@@ -38,6 +39,15 @@ fn sound(ending: &str, data: &[u8]) {
             Err(refused) => one_line(&refused),
         }
     });
+}
+
+/// Published models of strokes: densities that are numbers, or the reason.
+fn stroke_models(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    match asperity_stroke::models::read(text) {
+        Ok(models) => assert!(models.windows.iter().all(|window| window.speed_m_s > 0.0)),
+        Err(refused) => one_line(&refused),
+    }
 }
 
 /// A mesh, and its repair where it is small.
