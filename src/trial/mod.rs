@@ -11,9 +11,8 @@ use crate::model::levels::{
     FROM, PAUSE_S, REFERENCE_FORCE_N, REFERENCE_SPEED_M_S, STROKE_S, WAYS, mean_power,
 };
 use crate::model::material::Material;
-use crate::model::probe::probe_by_name;
+use crate::model::probe::THING_PROBE;
 use crate::model::surface::{Roughness, Surface};
-use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
 use bench::{Bench, Motion, RATE_HZ};
 use std::hash::{DefaultHasher, Hash};
@@ -31,7 +30,7 @@ fn of_body(config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
     let id = bench.scene.add_body(alone(body))?;
     let surface = bench.scene.add_surface(plain_ground()?)?;
     // All of a rigid thing: what is heard of its tip alone would make bodies, and strikes, louder.
-    let rigid = Probe { tip: None, ..probe_by_name("rigid").unwrap_or_default() };
+    let rigid = THING_PROBE;
     let rigid = bench.scene.add_probe(rigid)?;
     let drawn = Touching::on(surface).probe(rigid).held_by(id);
     let drawn = bench.stroke(drawn, 0, [1.0; 2], &along(WAYS[1])).heard.sqrt();

@@ -12,7 +12,7 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::{ChannelId, ContactEvent, UvPlace, probe_by_name};
+use asperity::{ChannelId, ContactEvent, THING_PROBE, UvPlace};
 use asperity_pairs::{
     Motion, Notice, ODD_GRAVITY_M_S2, Pair, Side, Solved, Step, Thing, Vec3, axis_radius_m, mobility_per_kg,
 };
@@ -45,7 +45,7 @@ impl Plugin for AvianTouchPlugin {
                 "asperity hears no avian: AsperityPlugin has to be added before, and to be built"
             );
         };
-        match touch.scene().add_probe(probe_by_name("rigid").unwrap_or_default()) {
+        match touch.scene().add_probe(THING_PROBE) {
             Ok(rigid) => {
                 touch.name_own_probe(RIGID_PROBE, rigid);
                 let pairs = BTreeMap::new();

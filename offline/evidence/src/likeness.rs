@@ -1,5 +1,5 @@
-//! Likeness of surfaces to the touch: the strokes of [`abx`], felt by the [observer] with people's
-//! thresholds and difference limens.
+//! Likeness of surfaces to the touch: the strokes of [`abx`], felt by the
+//! [`observer`](crate::observer) with people's thresholds and difference limens.
 //!
 //! ```text
 //! d′² = xᵀ C⁻¹ x      x = m_a − m_b,  C = diag(σ² + (v_a + v_b)/2) + σ̄² 1 1ᵀ over the third octaves

@@ -175,7 +175,7 @@ fn play(surface: Surface, ways: &[Way], seed: u64) -> Result<Render, FileError> 
     offline::render(scene, renderer, &log, &names, &options).map_err(FileError::from_error)
 }
 
-/// Pascals of a sample: the reference stroke over a flat plate lies at [`REFERENCE_DB`].
+/// Pascals of a sample: the reference stroke over a flat plate lies at `REFERENCE_DB`.
 ///
 /// # Errors
 /// When the engine refuses the plate.

@@ -1,7 +1,7 @@
 //! Noise floor of the recording.
 //!
 //! Standstill tells it bin by bin. Without one, what does not fall any more at the top of the band
-//! is taken for white: the largest white power that leaves the bands above [`WHITE_FROM_HZ`] on a
+//! is taken for white: the largest white power that leaves the bands above 150 Hz on a
 //! straight line of a power law through the probe.
 
 use crate::db;

@@ -74,7 +74,7 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
         Config { clock: asperity::ClockMode::Exact, ..AsperityPlugin::default().config }.build().unwrap();
     let mut own = Names { surfaces: HashMap::new(), bodies: HashMap::new(), probes: HashMap::new() };
     for probe in names.probes.keys() {
-        own.probes.insert(probe.clone(), scene.add_probe(asperity::probe_by_name("rigid").unwrap()).unwrap());
+        own.probes.insert(probe.clone(), scene.add_probe(asperity::THING_PROBE).unwrap());
     }
     for i in 0..plates {
         let body = scene.add_body(body()).unwrap();

@@ -27,7 +27,7 @@ pub use notices::Warning;
 pub use thing::{Mapping, Thing};
 pub use view::View;
 
-use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, probe_by_name};
+use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, THING_PROBE};
 use asperity_pairs::{Motion, Pair, Side, Step};
 use notices::Notices;
 use rapier3d::prelude::*;
@@ -78,12 +78,12 @@ struct Listed {
 }
 
 impl Adapter {
-    /// An adapter whose things touch as the scene's new probe `rigid`.
+    /// An adapter whose things touch as the scene's new probe, [`THING_PROBE`].
     ///
     /// # Errors
     /// When the scene has no place for another probe.
     pub fn new(scene: &mut Scene) -> Result<Self, AddError> {
-        let rigid = scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
+        let rigid = scene.add_probe(THING_PROBE)?;
         Ok(Self {
             things: HashMap::new(),
             pairs: BTreeMap::new(),
