@@ -134,7 +134,8 @@ mod tests {
         let original = impression(1.0);
         let distances = [1.0, 0.9, 0.5, 0.1].map(|height| original.distance(&impression(height)));
         assert!(distances[0] == 0.0 && distances.is_sorted(), "{distances:?}");
-        // 0.9 dB in all bands is about what is just noticed, 20 dB are not missed.
-        assert!(distances[1] < 1.0 && distances[3] > 5.0, "{distances:?}");
+        // 0.9 dB in all bands is less than what is just noticed, 20 dB are not missed: a level that
+        // all bands share counts once.
+        assert!(distances[1] < 1.0 && distances[3] > 1.5, "{distances:?}");
     }
 }

@@ -261,7 +261,7 @@ fn solve(
             "at least 4 must: record longer, press harder, stroke faster",
         ));
     }
-    let tip_radius_m = tool.probe.tip_radius_m;
+    let tip_radius_m = tool.sounding().tip_radius_m;
     let law = PowerLaw::through(&parted.bands, tip_radius_m);
     let spectrum = Spectrum::new(&parted.bands);
     let octaves: Vec<Octave> =

@@ -6,7 +6,8 @@
 //! ```
 //! The pad on its pressed contact spring, the grip behind it, the hand at its end: the engine's
 //! contact while it stays down. An acceleration of a finger goes on through its skin and tissue
-//! ([`asperity_dsp::actuator::Skin`]). Sound is the contact force through the body's own response.
+//! ([`asperity_dsp::actuator::Skin`]). Sound is the contact force through the body's own response,
+//! under the tip of its own that a tool has for it.
 
 use asperity_dsp::actuator::{Skin, SkinState};
 use asperity_dsp::micro_contact::Probe;
@@ -66,9 +67,18 @@ pub struct Tool {
 }
 
 impl Tool {
+    /// Probe that the recording is of: for sound the tip of its own, where it has one, on hard
+    /// ground.
+    pub(crate) fn sounding(&self) -> Probe {
+        match (&self.quantity, &self.probe.tip) {
+            (Quantity::Sound(_), Some(tip)) => self.probe.heard(tip),
+            _ => self.probe,
+        }
+    }
+
     /// Recorded quantity and contact force over felt height at a frequency under a force.
     fn responses(&self, frequency_hz: f64, force_n: f64) -> [Complex<f64>; 2] {
-        let probe = &self.probe;
+        let probe = &self.sounding();
         let s = Complex::new(0.0, 2.0 * PI * frequency_hz.max(1e-6));
         let k = probe.contact_stiffness_n_m * force_n.max(1e-3).powf(probe.force_exponent);
         let grip = probe.pad_stiffness_n_m + probe.pad_damping_n_s_m * s;
