@@ -25,7 +25,7 @@ const RATES_HZ: [f64; 4] = [44_100.0, 48_000.0, 22_050.0, 32_000.0];
 
 struct Day {
     scene: Scene,
-    /// None only while it is made anew.
+    /// Audio half; none only while it is made anew.
     renderer: Option<Renderer>,
     rng: Rng,
     /// The game's own clock.

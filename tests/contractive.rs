@@ -68,7 +68,7 @@ fn a_path_moved_by_a_picometre_gives_the_same_render_with_the_shipped_defaults()
     }
 }
 
-/// What leaps from asperity to asperity forgets nothing: a leg of 5 kg on a newton.
+/// Probes that leap from asperity to asperity, and so never converge: a leg of 5 kg on a newton.
 const LEAP: [&str; 1] = ["sole"];
 
 #[test]

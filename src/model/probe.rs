@@ -1,7 +1,7 @@
 //! Probe presets, each number with its source.
 //!
-//! What is felt of a tool and what is heard of it are two chains: the tool's mass on its own
-//! bending and grip, and the [tip](HeardTip) in front of it on Hertz' spring.
+//! A tool is two chains: felt, its mass on its own bending and grip; heard, the [tip](HeardTip) in
+//! front of it on Hertz' spring.
 
 use crate::model::material::Material;
 use asperity_dsp::micro_contact::{self as contact, HeardTip, Probe};

@@ -12,7 +12,7 @@
 //! | k, M, y | spring and mass of the tool behind it ([`heard`](super::Probe::heard)) |
 //! | z | the ground, its micro-relief ridden with [`HeardTip::asperity_radius_m`] |
 //!
-//! The same equations as the pad's, so the same integrator runs them. A shaft sends what its
+//! The equations are those of the pad, so the same integrator runs them. A shaft sends what its
 //! impedance lets through, F ≈ (b + jωm) ż, and not the weight of the tool: the one spring of 6.5
 //! kN/m that feels right for a stylus is a low-pass at 74 Hz for its sound.
 

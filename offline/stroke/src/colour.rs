@@ -10,8 +10,8 @@
 //! | C | 5 dB, correlated over half an octave, and a tilt of 2 dB an octave |
 //! | e | 0.3 dB |
 //!
-//! What stays at one place in S for every speed is ground, what stays at one frequency is rig. One
-//! speed cannot tell them apart, and then all of it is ground.
+//! Ground stays at one place in S for every speed, the rig at one frequency. One speed cannot tell
+//! them apart, and then all of it is ground.
 
 use crate::relief::{Band, Group, Level};
 use nalgebra::{DMatrix, DVector};

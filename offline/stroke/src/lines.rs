@@ -5,7 +5,7 @@
 //! of an exponential variable over its median); a line stands over it by more than chance gives
 //! once in a hundred strokes.
 //!
-//! Where nobody measured the speed sample by sample, its wander smears a line. The phase of the
+//! A speed that was not measured sample by sample wanders and smears a line. The phase of the
 //! strongest one, in a band about it that narrows from ± 25 to 8 %, then tells the place: a period
 //! for every turn. The period is the path over the turns.
 

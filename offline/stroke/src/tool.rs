@@ -11,6 +11,7 @@
 
 use asperity_dsp::actuator::{Skin, SkinState};
 use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::mode::Mode;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
 use std::f64::consts::PI;
@@ -26,29 +27,16 @@ pub enum Quantity {
     Sound(Ring),
 }
 
-/// A mode of the body, answering an impulse of 1 N·s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RingMode {
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-    /// Decay, 1/s.
-    pub decay_per_s: f64,
-    /// Amplitude for each N·s.
-    pub amplitude: f64,
-    /// Phase of the sine at the onset.
-    pub phase_rad: f64,
-}
-
-/// Ring of a body.
+/// Ring of a body: its modes, whose amplitudes answer an impulse of 1 N·s.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Ring(pub Vec<RingMode>);
+pub struct Ring(pub Vec<Mode>);
 
 impl Ring {
     /// Response to a force at a frequency.
     #[must_use]
     pub fn response(&self, frequency_hz: f64) -> Complex<f64> {
         let s = Complex::new(0.0, 2.0 * PI * frequency_hz);
-        let each = |mode: &RingMode| {
+        let each = |mode: &Mode| {
             let (w, d) = (2.0 * PI * mode.frequency_hz, mode.decay_per_s);
             let (sin, cos) = mode.phase_rad.sin_cos();
             mode.amplitude * ((s + d) * sin + w * cos) / ((s + d) * (s + d) + w * w)

@@ -7,7 +7,7 @@
 //! Source: the noise paper names libnoise's modules as its next step; turbulence as Perlin (1985),
 //! the sum of |noise| over octaves, Voronoi as Worley (1996), its first distance. Left out of
 //! libnoise's ridged noise: the weight by which an octave fades where the one before it is low.
-//! Where an octave is not resolved it leaves its mean, so that heights do not depend on speed.
+//! An octave that is not resolved leaves its mean, so that heights do not depend on speed.
 
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3};
 use asperity_dsp::rng::hash_u32;

@@ -31,7 +31,7 @@ mod program;
 #[allow(dead_code)]
 mod unwrap;
 
-/// What the import of glTF asks of the verb that makes modes.
+/// Part of the verb `modes` that the import of glTF calls.
 #[cfg(feature = "offline")]
 mod modes {
     use crate::error::CliError;

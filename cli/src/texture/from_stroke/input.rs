@@ -2,11 +2,12 @@
 
 use super::{Options, Unit};
 use crate::error::CliError;
-use asperity::ModalModel;
 use asperity::files::scene_file::probe_of;
+use asperity::{ModalModel, Mode};
 use asperity_dsp::micro_contact::Probe;
+use asperity_fit::FittedMode;
 use asperity_fit::recording::Sound;
-use asperity_stroke::tool::{Ring, RingMode};
+use asperity_stroke::tool::Ring;
 use asperity_stroke::{Quantity, Stroke, Track};
 use std::path::{Path, PathBuf};
 
@@ -63,35 +64,18 @@ pub(super) fn quantity(options: &Options) -> Result<Quantity, CliError> {
             Quantity::Acceleration
         });
     };
-    let modes = if path.extension().is_some_and(|end| end == "json") {
+    let (modes, impulse_n_s): (Vec<Mode>, f64) = if path.extension().is_some_and(|end| end == "json") {
         let model = ModalModel::load(path).map_err(CliError::from_error)?;
-        let impulse = model.impulse_n_s;
-        model
-            .modes
-            .iter()
-            .map(|mode| RingMode {
-                frequency_hz: mode.frequency_hz,
-                decay_per_s: mode.decay_per_s,
-                amplitude: mode.amplitude / impulse,
-                phase_rad: mode.phase_rad,
-            })
-            .collect()
+        (model.modes, model.impulse_n_s)
     } else {
         let recording =
             asperity_fit::load(path, asperity_fit::ChannelChoice::default()).map_err(CliError::from_error)?;
         let fit = asperity_fit::fit(&recording, &asperity_fit::FitOptions::default(), &mut |_| ())
             .map_err(CliError::from_error)?;
-        fit.modes
-            .iter()
-            .map(|mode| RingMode {
-                frequency_hz: mode.frequency_hz,
-                decay_per_s: mode.decay_per_s,
-                amplitude: mode.amplitude / HIT_N_S,
-                phase_rad: mode.phase_rad,
-            })
-            .collect()
+        (fit.modes.iter().map(FittedMode::mode).collect(), HIT_N_S)
     };
-    Ok(Quantity::Sound(Ring(modes)))
+    let for_one = |mode: &Mode| Mode { amplitude: mode.amplitude / impulse_n_s, ..*mode };
+    Ok(Quantity::Sound(Ring(modes.iter().map(for_one).collect())))
 }
 
 /// The rig's response.
