@@ -1,12 +1,12 @@
 //! Octaves of the engine's micro-relief as they are: their wavelengths, and their spectra along a
 //! line, read from the noise itself.
 
+use crate::hann;
 use crate::relief::wavenumber;
 use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights, Relief};
 use asperity_dsp::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
-use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -83,11 +83,8 @@ pub(crate) fn octave_spectrum(
             &weights,
             &mut height_m,
         );
-        let mut bins: Vec<Complex<f64>> = height_m
-            .iter()
-            .enumerate()
-            .map(|(i, h)| Complex::new(h * (0.5 - 0.5 * (2.0 * PI * i as f64 / LENGTH as f64).cos()), 0.0))
-            .collect();
+        let mut bins: Vec<Complex<f64>> =
+            height_m.iter().zip(hann(LENGTH)).map(|(h, w)| Complex::new(h * w, 0.0)).collect();
         transform.process(&mut bins);
         let scale = 2.0 * step_m / (0.375 * LENGTH as f64) / WAYS.len() as f64;
         density.iter_mut().zip(&bins).for_each(|(sum, bin)| *sum += scale * bin.norm_sqr());

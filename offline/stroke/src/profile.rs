@@ -1,10 +1,10 @@
 //! Profile of a stroke: felt height at equal steps of place.
 
+use crate::hann;
 use crate::recording::Stroke;
 use crate::tool::Tool;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
-use std::f64::consts::PI;
 
 /// Band of the recording that lines are looked for in, Hz.
 const BAND_HZ: (f64, f64) = (15.0, 1200.0);
@@ -75,12 +75,8 @@ pub(crate) fn at_places(height_m: &[f64], path_m: &[f64], stroke: &Stroke) -> Pr
 pub(crate) fn spectrum(profile: &Profile) -> (Vec<f64>, f64) {
     let count = profile.height_m.len();
     let length = (PADDED * count).next_power_of_two();
-    let mut bins: Vec<Complex<f64>> = profile
-        .height_m
-        .iter()
-        .enumerate()
-        .map(|(i, h)| Complex::new(h * (0.5 - 0.5 * (2.0 * PI * i as f64 / count as f64).cos()), 0.0))
-        .collect();
+    let mut bins: Vec<Complex<f64>> =
+        profile.height_m.iter().zip(hann(count)).map(|(h, w)| Complex::new(h * w, 0.0)).collect();
     bins.resize(length, Complex::default());
     FftPlanner::new().plan_fft_forward(length).process(&mut bins);
     let scale = (4.0 / count as f64).powi(2);

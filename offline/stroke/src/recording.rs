@@ -1,9 +1,9 @@
 //! Recorded strokes, and their power density window by window.
 
+use crate::hann;
 use crate::tool::Tool;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
-use std::f64::consts::PI;
 
 /// Speed or force along a stroke.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,8 +113,7 @@ pub fn respond(windows: &mut [Window], tool: &Tool) {
 pub fn windows(stroke: &Stroke, index: usize, length_s: f64) -> Vec<Window> {
     let length = ((length_s * stroke.rate_hz) as usize).clamp(64, stroke.len().max(64));
     let hop = length / 2;
-    let hann: Vec<f64> =
-        (0..length).map(|i| 0.5 - 0.5 * (2.0 * PI * i as f64 / length as f64).cos()).collect();
+    let hann: Vec<f64> = hann(length).collect();
     let power: f64 = hann.iter().map(|w| w * w).sum();
     let transform = FftPlanner::new().plan_fft_forward(length);
     let mut from = 0;

@@ -177,15 +177,10 @@ pub struct Band {
 pub fn slopes(bands: &[Band]) -> Vec<f64> {
     let mut slopes = vec![FIRST_SLOPE; BANDS];
     for at in bands {
-        let near: Vec<&Band> = bands.iter().filter(|band| band.band.abs_diff(at.band) <= 2).collect();
-        if near.len() < 3 {
-            continue;
+        let near: Vec<Band> = bands.iter().filter(|band| band.band.abs_diff(at.band) <= 2).copied().collect();
+        if near.len() >= 3 {
+            slopes[at.band] = (-slope_of(&near)).clamp(-1.0, 5.0);
         }
-        let count = near.len() as f64;
-        let x = near.iter().map(|band| band.band as f64).sum::<f64>() / count;
-        let xx: f64 = near.iter().map(|band| (band.band as f64 - x).powi(2)).sum();
-        let xy: f64 = near.iter().map(|band| (band.band as f64 - x) * band.level_db).sum();
-        slopes[at.band] = (-xy / xx).clamp(-1.0, 5.0);
     }
     slopes
 }
@@ -229,11 +224,11 @@ impl<'a> Spectrum<'a> {
             [only] => (only, only),
         };
         if place <= first.band as f64 {
-            let slope = end_slope(&bands[..bands.len().min(6)]).min(0.0);
+            let slope = slope_of(&bands[..bands.len().min(6)]).min(0.0);
             return first.level_db + slope * (place - first.band as f64);
         }
         if place >= last.band as f64 {
-            let slope = end_slope(&bands[bands.len().saturating_sub(7)..]).min(0.0);
+            let slope = slope_of(&bands[bands.len().saturating_sub(7)..]).min(0.0);
             return last.level_db + slope * (place - last.band as f64);
         }
         let next = bands.partition_point(|band| band.band as f64 <= place);
@@ -277,7 +272,7 @@ impl<'a> Spectrum<'a> {
 }
 
 /// Slope of the best line, dB a third octave.
-fn end_slope(bands: &[Band]) -> f64 {
+fn slope_of(bands: &[Band]) -> f64 {
     let count = bands.len().max(1) as f64;
     let x = bands.iter().map(|band| band.band as f64).sum::<f64>() / count;
     let xx: f64 = bands.iter().map(|band| (band.band as f64 - x).powi(2)).sum();

@@ -123,7 +123,7 @@ impl Tool {
         self.responses(frequency_hz, force_n)[1].norm_sqr()
     }
 
-    /// Largest error, dB, that constants each wrong by `share` bring together at a frequency.
+    /// Error, dB, that constants each wrong by `share`, independently, bring at a frequency.
     #[must_use]
     pub fn uncertainty_db(&self, frequency_hz: f64, force_n: f64, share: f64) -> f64 {
         let level = |tool: &Self| crate::db(tool.responses(frequency_hz, force_n)[0].norm_sqr());
