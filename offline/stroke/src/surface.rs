@@ -12,7 +12,7 @@ use crate::octaves::{self, MicroRelief};
 use crate::power_law::PowerLaw;
 use crate::recording::{Stroke, Window, respond, windows};
 use crate::relief::{self, Group, Octave, Spectrum};
-use crate::tool::Tool;
+use crate::tool::{Quantity, Tool};
 use asperity_dsp::fractal_noise::OCTAVES;
 
 /// Knowledge beside the recording.
@@ -71,6 +71,9 @@ pub struct StrokeSurface {
 const WINDOW_S: [f64; 2] = [0.4, 1.5];
 /// Deviation of a measured speed from which windows are short, a share.
 const STEADY: f64 = 0.03;
+/// Lowest frequency that sound is read from, Hz: pressing at the pace of a hand does not sound, and
+/// is taken off what is heard.
+const SOUND_FROM_HZ: f64 = 120.0;
 /// Band that published models hold, Hz.
 const MODELS_HZ: (f64, f64) = (17.0, 450.0);
 /// Highest frequency that is read, Hz.
@@ -105,7 +108,10 @@ pub fn fit(
         all.extend(own);
     }
     let longest_s = strokes.iter().map(Stroke::seconds).fold(0.0, f64::max);
-    let low_hz = (50.0 / longest_s).clamp(if steady { 5.0 } else { 12.0 }, 40.0);
+    let low_hz = match options.tool.quantity {
+        Quantity::Sound(_) => SOUND_FROM_HZ,
+        _ => (50.0 / longest_s).clamp(if steady { 5.0 } else { 12.0 }, 40.0),
+    };
     let found: Vec<lines::Lines> = strokes.iter().map(|stroke| lines::find(stroke, &options.tool)).collect();
     let (common, wander) = common_lines(strokes, &found, &mut warnings);
     let friction = tangential_n.and_then(|force| friction(strokes, force, &mut warnings));

@@ -107,6 +107,11 @@ pub fn response(probe: &Probe, force_n: f64, hz: f64) -> Complex<f64> {
 }
 
 pub fn make(made: &Made) -> Stroke {
+    recorded(made, |hz| response(&stylus(), made.force_n, hz))
+}
+
+/// Stroke of which a linear filter of the height is recorded.
+pub fn recorded(made: &Made, gain: impl Fn(f64) -> Complex<f64>) -> Stroke {
     let mut rng = Rng::new(made.seed);
     let count = (made.seconds * RATE_HZ) as usize;
     let phase = rng.uniform() * 2.0 * PI;
@@ -154,7 +159,7 @@ pub fn make(made: &Made) -> Stroke {
             .sum::<f64>()
     };
     let mut signal: Vec<f64> = path.iter().map(|x| height(*x)).collect();
-    filtered(&mut signal, |hz| response(&stylus(), made.force_n, hz));
+    filtered(&mut signal, gain);
     let mut inside = signal.clone();
     filtered(&mut inside, |hz| Complex::new(if (20.0..1000.0).contains(&hz) { 1.0 } else { 0.0 }, 0.0));
     let rms = (inside.iter().map(|x| x * x).sum::<f64>() / count as f64).sqrt();

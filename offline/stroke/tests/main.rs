@@ -4,3 +4,4 @@ mod colour;
 mod lines;
 mod made;
 mod octaves;
+mod sound;
