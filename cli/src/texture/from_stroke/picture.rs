@@ -43,7 +43,7 @@ pub(super) fn svg(name: &str, found: &StrokeSurface) -> String {
         Axis::new("rms, dB re 1 µm", ""),
     )
     .with(dots("read from the recording", palette::AUDIO, points(&|octave| !octave.is_extrapolated)))
-    .with(dots("continued", palette::GROUND, points(&|octave| octave.is_extrapolated)));
+    .with(dots("continued", palette::HAPTIC, points(&|octave| octave.is_extrapolated)));
     figure.row(180.0, [panel]);
     figure.svg()
 }
@@ -57,5 +57,5 @@ fn spectra(found: &StrokeSurface, group: usize, (low, high): (f64, f64)) -> Pane
     let axis = Axis::new("density, dB", "").range(low, high);
     Panel::new(title, Axis::log("frequency", "Hz"), axis)
         .with(Layer::line("recorded", palette::AUDIO, Series::Points(recorded)))
-        .with(Layer::line("of the surface", palette::GROUND, Series::Points(played)))
+        .with(Layer::line("of the surface", palette::HAPTIC, Series::Points(played)))
 }
