@@ -233,6 +233,19 @@ fn a_document_without_the_draft_gives_a_body_and_a_surface_in_true_metres() {
     }
 }
 
+#[test]
+fn surfaces_of_a_level_come_without_waiting_for_bodies() {
+    let folder = tempfile::tempdir().unwrap();
+    let (document, bytes) = textured_box(&json!({"children": [1]}), &json!({}));
+    put(folder.path(), &document, &bytes[..232]);
+    fs::write(folder.path().join("my normals.png"), &bytes[232..]).unwrap();
+    let arguments = ["import", "scene.gltf", "-o", "out", "--surfaces-only", "--json"];
+    let (status, out, err) = told(&asperity(folder.path(), &arguments));
+    assert_eq!((status, err.as_str()), (0, ""), "{out}");
+    let report: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((report["bodies"].as_u64(), report["surfaces"].as_u64()), (Some(0), Some(1)), "{report}");
+}
+
 /// A document of one sheet without texture coordinates, `open` or closed to a box.
 fn sheet(open: bool) -> (Value, Vec<u8>) {
     let (mut document, bytes) = textured_box(&json!({"children": [1]}), &json!({}));

@@ -43,6 +43,9 @@ pub struct Options {
     /// Material of bodies where the document has none: a preset
     #[arg(long, value_name = "NAME", default_value = "ceramic")]
     pub material: String,
+    /// Make no bodies of meshes without the draft: each takes seconds to solve
+    #[arg(long)]
+    pub surfaces_only: bool,
     /// Texture coordinates: into NAME.glb, of meshes without the draft
     #[command(flatten)]
     pub unwrap: UnwrapOptions,

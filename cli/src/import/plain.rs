@@ -107,6 +107,9 @@ impl Scene {
             }
             Err(error) => self.tell(format!("mesh {name} is not unwrapped: {}; {}", error.what, error.right)),
         }
+        if options.surfaces_only {
+            return Ok(false);
+        }
         let elastic = Elastic {
             young_pa: preset.young_pa,
             poisson: preset.poisson,
