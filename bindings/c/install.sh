@@ -31,7 +31,7 @@ fi
 ln -sf "$shared" "$prefix/lib/$link"
 
 filled() {
-    sed -e "s|@PREFIX@|$prefix|; s|@VERSION@|$version|; s|@SHARED@|lib/$shared|; s|@STATIC@|lib/libasperity.a|" \
+    sed -e "s|@VERSION@|$version|; s|@SHARED@|lib/$shared|; s|@STATIC@|lib/libasperity.a|" \
         -e "s|@IMPLIB@||; s|@PRIVATE@|$private|; s|@PRIVATE_CMAKE@|$(printf %s "$private" | tr ' ' ';')|" "$1"
 }
 filled asperity.pc.in >"$prefix/lib/pkgconfig/asperity.pc"

@@ -22,9 +22,9 @@ use tiny_http::{Method, Request, Server};
 
 /// Files of the page, by their addresses.
 const PAGE: &[(&str, &str, &str)] = &[
-    ("/", "text/html; charset=utf-8", include_str!("../../../../bindings/web/tune/tune.html")),
-    ("/tune.js", "text/javascript; charset=utf-8", include_str!("../../../../bindings/web/tune/tune.js")),
-    ("/style.css", "text/css; charset=utf-8", include_str!("../../../../bindings/web/page/style.css")),
+    ("/", "text/html; charset=utf-8", include_str!("page/tune.html")),
+    ("/tune.js", "text/javascript; charset=utf-8", include_str!("page/tune.js")),
+    ("/style.css", "text/css; charset=utf-8", include_str!("page/style.css")),
 ];
 /// A request is never longer, bytes.
 const MOST_BYTES: u64 = 1 << 20;
