@@ -7,12 +7,11 @@
 
 use crate::common;
 
-use asperity::Surface;
 use asperity::surface::solid_materials::SolidMaterial;
-use asperity::surface::solid_noise::SolidNoise;
 use asperity_evidence::observer::{Confusion, Judge, Percept, constants};
+use asperity_evidence::plates;
 use common::exploration::percepts;
-use common::{SIDE_M, si_config};
+use common::si_config;
 
 const TEMPLATES: u64 = 16;
 /// People had 16 trials a material.
@@ -22,8 +21,7 @@ fn lot(from: u64, count: u64) -> Vec<Vec<Percept>> {
     let of = |(index, material): (usize, &SolidMaterial)| {
         let trial = |n: u64| {
             let seed = from + 1000 * index as u64 + n;
-            let source = SolidNoise::new(material.parameters(), seed).unwrap();
-            let surface = Surface::new(source, SIDE_M, SIDE_M).unwrap();
+            let surface = plates::material(*material, seed).unwrap();
             let [felt, _] = percepts(si_config(), surface, seed, constants::LISTENING_PA, false);
             felt
         };

@@ -20,6 +20,7 @@ mod reduction;
 mod rendering;
 mod shaping;
 mod sources;
+mod strokes;
 mod tracked;
 mod watch;
 
@@ -46,6 +47,8 @@ mod _native {
     use super::shaping::modes;
     #[pymodule_export]
     use super::sources::{as_toml, names_of, parse_log};
+    #[pymodule_export]
+    use super::strokes::from_stroke;
     #[pymodule_export]
     use super::tracked::TrackedTip;
 

@@ -57,6 +57,29 @@ def test_a_photograph_lies_as_its_options_say():
     assert seen == sorted(seen) and seen[-1] <= 1
 
 
+def vibration(seconds=4.0, rate=4000.0, line_hz=150.0):
+    rng = np.random.default_rng(9)
+    time_s = np.arange(int(seconds * rate)) / rate
+    low = np.convolve(rng.normal(0, 0.3, time_s.size), 0.8 ** np.arange(40), "same")
+    return 0.3 * low + 0.2 * np.sin(2 * np.pi * line_hz * time_s), rate
+
+
+def test_a_strokes_surface_is_the_one_that_the_program_finds(program, tmp_path):
+    samples, rate = vibration()
+    np.savetxt(tmp_path / "stroke.csv", samples, header="a", comments="")
+    words = ("--rate", rate, "--probe", "stylus", "--speed", 0.12, "--force", 1.5, "-o", tmp_path / "out", "--json")
+    theirs = json.loads(run(program, "texture", "from-stroke", tmp_path / "stroke.csv", *words))
+    surface, told = asp.texture.from_stroke(samples, rate, speed=0.12, force=1.5)
+    del theirs["files"]
+    assert told == theirs and len(told["lines"]) == 1
+    take = asp.stroke(surface, speed=0.2, force=1.0, duration=0.3, probe="stylus")
+    assert np.abs(take.haptic).max() > 1e-3
+    # Two strokes of two axes, speeds as numbers and as an array.
+    two = [np.stack([samples, 0.3 * samples]), np.stack([samples[::-1], samples])]
+    _, told = asp.texture.from_stroke(two, rate, speed=[0.06, np.full(samples.size, 0.12)], force=1.5)
+    assert [round(group["speed_m_s"], 3) for group in told["recorded"]] == [0.06, 0.12]
+
+
 def test_surfaces_are_told_apart_as_the_program_tells_them_apart(program, tmp_path):
     x = np.arange(64)
     maps = [np.round(127 + 60 * np.sin(2 * np.pi * x / period)[None, :] * np.ones((64, 1))).astype(np.uint8) for period in (16, 8)]
@@ -109,6 +132,10 @@ def test_what_is_refused_of_photographs_maps_and_meshes_is_one_sentence(tmp_path
         (lambda: asp.texture.from_photo(np.zeros((8, 8))), "at least 16 texels"),
         (lambda: asp.texture.from_photo(tiles(), method="guess"), "must be one of integrable, tsai-shah"),
         (lambda: asp.texture.from_photo(tiles(), relief_m=-1.0), "relief_m"),
+        (lambda: asp.texture.from_stroke(np.zeros(4000), 1000, speed=0.1, force=1.0), "every sample is the same"),
+        (lambda: asp.texture.from_stroke(np.zeros(4000), 1000, speed=0.1, force=1.0, probe="broom"), "broom"),
+        (lambda: asp.texture.from_stroke(np.zeros(40), 1000, speed=[0.1, 0.2], force=1.0), "2 entries for 1 strokes"),
+        (lambda: asp.texture.from_stroke(np.zeros(40), 1000, speed=np.ones(3), force=1.0), "one a sample"),
         (lambda: asp.texture.compare([tiles()]), "give 2 to 8"),
         (lambda: asp.texture.compare([tiles(), tiles()], strokes=3), "strokes: 3 is refused; must be 20 to 10000"),
         (lambda: asp.texture.compare([tiles(), tiles()], width_m=0.0), "width_m: 0 is refused"),

@@ -263,6 +263,23 @@ pub fn ports(_quick: bool) -> Result<Part> {
     Ok(part)
 }
 
+/// Figures and tables of the sources whose numbers are claimed; none in a quick run.
+pub fn sources(quick: bool) -> Result<Part> {
+    let mut part = Part::default();
+    for entry in asperity_evidence::sources::ALL.iter().filter(|_| !quick) {
+        let Some(within) = entry.within else { continue };
+        let evidence = entry.run().map_err(|error| CliError::new(entry.name, error, "please report it"))?;
+        let anchor = ("as printed, largest difference", entry.name, "asperity evidence NAME -o DIR");
+        part.row(
+            format!("source {}: {}", entry.name, entry.title),
+            evidence.apart(),
+            [None, Some(within)],
+            anchor,
+        );
+    }
+    Ok(part)
+}
+
 /// Real-time factor, the median of pieces of eight blocks.
 pub fn speed(quick: bool) -> Result<Part> {
     let mut part = Part::default();

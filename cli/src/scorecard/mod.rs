@@ -90,13 +90,14 @@ impl Part {
 type Measure = fn(bool) -> Result<Part, CliError>;
 
 /// Every part, in the order of the page.
-const PARTS: [(&str, Measure); 7] = [
+const PARTS: [(&str, Measure); 8] = [
     ("kernels", measured::kernels),
     ("fit", measured::fit),
     ("six plates", measured::six_plates),
     ("seven materials", measured::seven_materials),
     ("growth", measured::growth_laws),
     ("ports", measured::ports),
+    ("sources", measured::sources),
     ("speed", measured::speed),
 ];
 

@@ -104,6 +104,15 @@ impl OctaveWeights {
 }
 
 impl OctaveWeights {
+    /// Rms of each octave at a roughness, m, coarsest first, where none fades with the footprint.
+    #[must_use]
+    pub fn rms_m(&self, roughness: f64) -> [f64; OCTAVES] {
+        let r = roughness.clamp(0.0, 1.0);
+        let sum = |c: &[f32]| c.iter().rev().fold(0.0, |sum, c| f64::from(*c) + r * sum);
+        let (level, ratio) = (sum(&LEVEL) * libm::sqrt(VARIANCE), sum(&OCTAVE_RATIO));
+        core::array::from_fn(|i| level * libm::pow(ratio, i as f64 - 4.0) * sum(&self.of[i]))
+    }
+
     /// Weights of the octaves from one on, by their index.
     #[must_use]
     pub fn from_octave(&self, octave: usize) -> Self {

@@ -16,6 +16,7 @@
 //! | [`stft_peaks`] | the baseline: modes as peaks of a short-time spectrum |
 //! | [`exact_brownian`] | surfaces of known fractal dimension |
 //! | [`process`] | time and memory that this process took |
+//! | [`reliefs`] | the six reliefs of the thesis' first experiment |
 //! | [`statistics`] | answers that people give: shares, means, d′, thresholds |
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
 //! | `sources` | figures and tables of the sources, computed again (feature `judges`) |
@@ -39,6 +40,7 @@ pub mod observer;
 #[cfg(feature = "judges")]
 pub mod plates;
 pub mod process;
+pub mod reliefs;
 pub mod score;
 #[cfg(feature = "judges")]
 pub mod sources;

@@ -132,21 +132,76 @@ impl Way {
     }
 }
 
-/// The strokes of a seed.
-fn ways(seed: u64) -> [Way; 2] {
-    let mut rng = Rng::new(seed);
-    let mut at_s = 0.05;
-    [0, 1].map(|axis| {
-        let speed_m_s = 0.06 + 0.16 * rng.uniform();
-        let force_n = 0.4 + 0.6 * rng.uniform();
-        let mut from = [0.08 + 0.04 * rng.uniform(), 0.2 + 0.6 * rng.uniform()];
-        if axis == 1 {
-            from.swap(0, 1);
-        }
-        let way = Way { from_s: at_s, to_s: at_s + 0.8 * SIDE_M / speed_m_s, from, axis, speed_m_s, force_n };
-        at_s = way.to_s + 0.1;
-        way
-    })
+/// Two strokes, along u and along v.
+#[derive(Debug, Clone, Copy)]
+pub struct Exploration([Way; 2]);
+
+impl Exploration {
+    /// Places, speeds and forces of a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        let mut rng = Rng::new(seed);
+        let mut at_s = 0.05;
+        Self([0, 1].map(|axis| {
+            let speed_m_s = 0.06 + 0.16 * rng.uniform();
+            let force_n = 0.4 + 0.6 * rng.uniform();
+            let mut from = [0.08 + 0.04 * rng.uniform(), 0.2 + 0.6 * rng.uniform()];
+            if axis == 1 {
+                from.swap(0, 1);
+            }
+            let to_s = at_s + 0.8 * SIDE_M / speed_m_s;
+            let way = Way { from_s: at_s, to_s, from, axis, speed_m_s, force_n };
+            at_s = way.to_s + 0.1;
+            way
+        }))
+    }
+
+    /// The strokes as they are reported, on surface "s".
+    #[must_use]
+    pub fn log(&self) -> ContactLog {
+        ContactLog { lines: self.0.iter().flat_map(Way::lines).collect() }
+    }
+
+    /// Percepts of its render; `pascals` of a sample of sound; `placed` where the task gives the
+    /// place of the hand.
+    #[must_use]
+    pub fn percepts(&self, render: &Render, pascals: f64, placed: bool) -> Explored {
+        let ways = self.0;
+        let audio_hz = render.sample_rate_hz;
+        let haptic_hz = audio_hz / EVERY as f64;
+        let mean = |x: &[f32]| x.iter().map(|x| f64::from(*x)).sum::<f64>() / EVERY as f64;
+        let haptic: Vec<f64> = render.haptic[0].chunks_exact(EVERY).map(mean).collect();
+        let audio: Vec<f64> = render.audio[0].iter().map(|x| pascals * f64::from(*x)).collect();
+        let hand = |samples: std::ops::Range<usize>, rate_hz: f64| -> (Vec<[f64; 2]>, Vec<usize>) {
+            let at = |n: usize| {
+                let t = n as f64 / rate_hz;
+                let way = &ways[usize::from(t > ways[0].to_s + 0.05)];
+                (way.place(t), way.axis)
+            };
+            samples.map(at).unzip()
+        };
+        let percepts = |from_s: f64, to_s: f64| {
+            let piece = |signal: &[f64], rate_hz: f64| {
+                let at = |s: f64| ((s * rate_hz) as usize).min(signal.len());
+                at(from_s)..at(to_s)
+            };
+            let (h, a) = (piece(&haptic, haptic_hz), piece(&audio, audio_hz));
+            let (place, axis) = hand(h.clone(), haptic_hz);
+            let known = placed.then_some(Hand { place: &place, axis: &axis });
+            let touched = felt(&haptic[h], haptic_hz, Unit::Displacement, known);
+            let (place, axis) = hand(a.clone(), audio_hz);
+            let known = placed.then_some(Hand { place: &place, axis: &axis });
+            [touched, heard(&audio[a.clone()], audio_hz, None, known)].map(|percept| (percept, a.clone()))
+        };
+        let whole = percepts(0.0, f64::INFINITY).map(|(percept, _)| percept);
+        let strokes = ways.map(|way| {
+            let [(touch, _), (mut ear, piece)] = percepts(way.from_s, way.to_s);
+            let rhythm = second::rhythm(&audio[piece], audio_hz, way.speed_m_s, |f| 1.0 / threshold_pa2(f));
+            ear.features.extend(rhythm);
+            Stroke { senses: [touch, ear], hand: [way.speed_m_s.ln(), way.force_n.ln()] }
+        });
+        Explored { first: whole, second: strokes.to_vec() }
+    }
 }
 
 /// Percepts of one exploration, for both observers.
@@ -158,7 +213,7 @@ pub struct Explored {
     pub second: Trial,
 }
 
-fn play(surface: Surface, ways: &[Way], seed: u64) -> Result<Render, FileError> {
+fn play(surface: Surface, log: &ContactLog, seed: u64) -> Result<Render, FileError> {
     let config = Config {
         seed,
         actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
@@ -170,9 +225,8 @@ fn play(surface: Surface, ways: &[Way], seed: u64) -> Result<Render, FileError> 
     let surface = surface.body(body).excitation(Excitation::BOTH);
     let id = scene.add_surface(surface).map_err(FileError::from_error)?;
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
-    let log = ContactLog { lines: ways.iter().flat_map(Way::lines).collect() };
     let options = Options { tail_s: 0.0, ..Options::default() };
-    offline::render(scene, renderer, &log, &names, &options).map_err(FileError::from_error)
+    offline::render(scene, renderer, log, &names, &options).map_err(FileError::from_error)
 }
 
 /// Pascals of a sample: the reference stroke over a flat plate lies at `REFERENCE_DB`.
@@ -181,7 +235,7 @@ fn play(surface: Surface, ways: &[Way], seed: u64) -> Result<Render, FileError> 
 /// When the engine refuses the plate.
 pub fn pascals() -> Result<f64, FileError> {
     let way = Way { from_s: 0.05, to_s: 1.05, from: [0.1, 0.5], axis: 0, speed_m_s: 0.1, force_n: 1.0 };
-    let audio = &play(plate("flat")?, &[way], 1)?.audio[0];
+    let audio = &play(plate("flat")?, &ContactLog { lines: way.lines() }, 1)?.audio[0];
     let power = audio.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / audio.len().max(1) as f64;
     Ok(LISTENING_PA * 10f64.powf(REFERENCE_DB / 20.0) / power.sqrt())
 }
@@ -191,42 +245,8 @@ pub fn pascals() -> Result<f64, FileError> {
 /// # Errors
 /// When the engine refuses the surface.
 pub fn explore(surface: Surface, seed: u64, pascals: f64, placed: bool) -> Result<Explored, FileError> {
-    let ways = ways(seed);
-    let render = play(surface, &ways, seed)?;
-    let audio_hz = render.sample_rate_hz;
-    let haptic_hz = audio_hz / EVERY as f64;
-    let mean = |x: &[f32]| x.iter().map(|x| f64::from(*x)).sum::<f64>() / EVERY as f64;
-    let haptic: Vec<f64> = render.haptic[0].chunks_exact(EVERY).map(mean).collect();
-    let audio: Vec<f64> = render.audio[0].iter().map(|x| pascals * f64::from(*x)).collect();
-    let hand = |samples: std::ops::Range<usize>, rate_hz: f64| -> (Vec<[f64; 2]>, Vec<usize>) {
-        let at = |n: usize| {
-            let t = n as f64 / rate_hz;
-            let way = &ways[usize::from(t > ways[0].to_s + 0.05)];
-            (way.place(t), way.axis)
-        };
-        samples.map(at).unzip()
-    };
-    let percepts = |from_s: f64, to_s: f64| {
-        let piece = |signal: &[f64], rate_hz: f64| {
-            let at = |s: f64| ((s * rate_hz) as usize).min(signal.len());
-            at(from_s)..at(to_s)
-        };
-        let (h, a) = (piece(&haptic, haptic_hz), piece(&audio, audio_hz));
-        let (place, axis) = hand(h.clone(), haptic_hz);
-        let known = placed.then_some(Hand { place: &place, axis: &axis });
-        let touched = felt(&haptic[h], haptic_hz, Unit::Displacement, known);
-        let (place, axis) = hand(a.clone(), audio_hz);
-        let known = placed.then_some(Hand { place: &place, axis: &axis });
-        [touched, heard(&audio[a.clone()], audio_hz, None, known)].map(|percept| (percept, a.clone()))
-    };
-    let whole = percepts(0.0, f64::INFINITY).map(|(percept, _)| percept);
-    let strokes = ways.map(|way| {
-        let [(touch, _), (mut ear, piece)] = percepts(way.from_s, way.to_s);
-        let rhythm = second::rhythm(&audio[piece], audio_hz, way.speed_m_s, |f| 1.0 / threshold_pa2(f));
-        ear.features.extend(rhythm);
-        Stroke { senses: [touch, ear], hand: [way.speed_m_s.ln(), way.force_n.ln()] }
-    });
-    Ok(Explored { first: whole, second: strokes.to_vec() })
+    let exploration = Exploration::new(seed);
+    Ok(exploration.percepts(&play(surface, &exploration.log(), seed)?, pascals, placed))
 }
 
 /// Table of one observer under one condition.

@@ -6,6 +6,8 @@
 mod contacts;
 mod graphics;
 mod metamers;
+mod named;
+mod sand;
 mod solids;
 
 use serde::Serialize;
@@ -37,33 +39,49 @@ pub struct Entry {
     /// Title.
     pub title: &'static str,
     compute: fn() -> Result<Found, String>,
+    /// Largest difference of a column that both have, where one is claimed.
+    pub within: Option<f64>,
 }
 
 /// Numbers as printed, ours, and the comparison.
 type Found = (Columns, Columns, String);
 
 /// Every computation.
-pub const ALL: [Entry; 5] = [
-    Entry { name: "000-cycle", title: "Time of a haptic cycle on a solid", compute: solids::cycle },
-    Entry { name: "001-fig-4", title: "Profiles of 1/f^α noise, α = 1 and 2", compute: contacts::profiles },
-    Entry {
-        name: "002-fig-5",
-        title: "Five surfaces and their metamers, told apart by the observer",
-        compute: metamers::told_apart,
-    },
-    Entry {
-        name: "004-table-6-1",
-        title: "Dimensions of Brownian surfaces by four estimators",
-        compute: graphics::dimensions,
-    },
-    Entry {
-        name: "004-fig-6-10",
-        title: "Strength of a Brownian surface against its dimension (figures 6.10 to 6.13)",
-        compute: graphics::strength,
-    },
+pub const ALL: [Entry; 12] = [
+    Entry::new("000-cycle", "Time of a haptic cycle on a solid", solids::cycle),
+    Entry::new("000-fig-4", "Seven materials, named by touch", named::seven_materials),
+    Entry::new("001-fig-4", "Profiles of 1/f^α noise, α = 1 and 2", contacts::profiles).within(0.1),
+    Entry::new("001-fig-7", "Profile, pad and impulses of a finger on tiles", contacts::state),
+    Entry::new("001-fig-10", "Six plates by touch, by ear and by both: confusions", named::six_plates),
+    Entry::new(
+        "002-fig-5",
+        "Five surfaces and their metamers, told apart by the observer",
+        metamers::told_apart,
+    )
+    .within(0.1),
+    Entry::new("003-fig-6", "Groove of a stroke in sand whose force falls", sand::falling_force),
+    Entry::new("003-fig-9", "A word written into sand (figures 9 to 12)", sand::writing).within(1e-9),
+    Entry::new("004-table-6-1", "Dimensions of Brownian surfaces by four estimators", graphics::dimensions)
+        .within(0.1),
+    Entry::new(
+        "004-fig-6-10",
+        "Strength of a Brownian surface against its dimension (figures 6.10 to 6.13)",
+        graphics::strength,
+    )
+    .within(0.0),
+    Entry::new("004-fig-8-6", "Six reliefs named by groups (figures 8.6 to 8.11)", named::groups),
+    Entry::new("004-table-8-1", "Right names out of five reliefs", named::right_names),
 ];
 
 impl Entry {
+    const fn new(name: &'static str, title: &'static str, compute: fn() -> Result<Found, String>) -> Self {
+        Self { name, title, compute, within: None }
+    }
+
+    const fn within(self, within: f64) -> Self {
+        Self { within: Some(within), ..self }
+    }
+
     /// Computes it.
     ///
     /// # Errors
@@ -71,6 +89,16 @@ impl Entry {
     pub fn run(&self) -> Result<Evidence, String> {
         let (document, ours, sentence) = (self.compute)()?;
         Ok(Evidence { name: self.name, title: self.title, document, ours, sentence })
+    }
+}
+
+impl Evidence {
+    /// Largest difference between what is printed and ours, over the columns that both have.
+    #[must_use]
+    pub fn apart(&self) -> f64 {
+        let both = self.document.iter().filter_map(|(name, printed)| Some((printed, self.ours.get(name)?)));
+        let each = both.flat_map(|(printed, ours)| printed.iter().zip(ours));
+        each.map(|(printed, ours)| (printed - ours).abs()).fold(0.0, f64::max)
     }
 }
 

@@ -4,10 +4,15 @@
 use asperity::Surface;
 use asperity::files::FileError;
 use asperity::surface::solid_materials::SolidMaterial;
+use asperity_evidence::exact_brownian::ExactBrownian;
+use asperity_evidence::likeness::Impression;
 use asperity_evidence::observer::{constants, second};
 use asperity_evidence::plates::{
     CONDITIONS, PLATES, Table, against_itself, judge, lot, material, pascals, plate,
 };
+use asperity_evidence::reliefs::{Relief, Shape};
+use asperity_surface::raster::Raster;
+use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 
 /// Templates and trials a class; people had 24 trials a plate and 16 a material.
 const COUNT: u64 = 16;
@@ -87,4 +92,59 @@ fn both_observers_say_what_they_say_of_the_seven_materials() {
     let pascals = pascals().unwrap();
     let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, false).unwrap());
     told(&judge(&known, &asked, &CONDITIONS[..1]), &names);
+}
+
+/// Four pieces each of twelve materials, heights 0 to 1: solids, Brownian surfaces, reliefs.
+fn pieces() -> Vec<Vec<Raster>> {
+    const SIDE: usize = 256;
+    let whole = |map: Raster| {
+        let (low, high) = map.range();
+        map.map(|height| (height - low) / (high - low))
+    };
+    let solid = |material: &SolidMaterial| {
+        let parameters = material.parameters();
+        let piece = |seed: u64| {
+            let noise = SolidNoise::new(parameters, seed).unwrap();
+            let at = |x: usize, y: usize| SolidCut::SLANTED.at([x, y].map(|n| 1.5625e-4 * n as f64));
+            whole(Raster::from_fn(SIDE, SIDE, |x, y| noise.definition(&parameters, at(x, y))))
+        };
+        (1..5).map(piece).collect()
+    };
+    let brownian = |hurst: f64| -> Vec<Raster> {
+        let map = |values: Vec<f64>| whole(Raster { width: SIDE, height: SIDE, values });
+        (1..3).flat_map(|seed| ExactBrownian::new(SIDE, hurst).pair(seed)).map(map).collect()
+    };
+    let relief = |shape: Shape| {
+        let relief = Relief { shape, across: 6.0, size: SIDE };
+        let piece = |n: usize| Raster::from_fn(SIDE, SIDE, |x, y| relief.height(x + 37 * n, y + 23 * n));
+        (0..4).map(|n| whole(piece(n))).collect()
+    };
+    let mut all: Vec<Vec<Raster>> = SolidMaterial::SEVEN.iter().map(solid).collect();
+    all.extend([0.2, 0.5, 0.8].map(brownian));
+    all.extend([Shape::Spheres, Shape::Quads].map(relief));
+    all
+}
+
+#[test]
+fn other_pieces_of_a_material_rank_before_other_materials() {
+    let impression = |map: &Raster| Impression::of(map, 0.04, 0.002, (40, 1)).unwrap();
+    let all: Vec<(usize, Impression)> = pieces()
+        .iter()
+        .enumerate()
+        .flat_map(|(material, maps)| maps.iter().map(move |map| (material, impression(map))))
+        .collect();
+    let mut first = Vec::new();
+    for (place, (material, original)) in all.iter().enumerate().take(40) {
+        let mut ranked: Vec<(f64, bool)> = all
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != place)
+            .map(|(_, (other, impression))| (original.distance(impression), other == material))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        first.push(ranked[..3].iter().filter(|(_, own)| *own).count());
+    }
+    let share = first.iter().filter(|own| **own == 3).count() as f64 / first.len() as f64;
+    println!("own pieces among the first three, query by query: {first:?}; all three in {share:.2}");
+    assert!(share >= 0.8, "{share}");
 }

@@ -15,9 +15,10 @@
 
 use crate::relief::{Band, Group, Level};
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 /// Response of the rig at a third octave of frequency.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Colour {
     /// Frequency, Hz.
     pub frequency_hz: f64,
@@ -28,14 +29,12 @@ pub struct Colour {
 }
 
 /// Surface and rig.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Parted {
     /// Spectrum of the felt height.
     pub bands: Vec<Band>,
     /// Response of the rig; empty where one speed cannot tell.
     pub colour: Vec<Colour>,
-    /// Levels that the model leaves: measured less predicted, dB, as the levels came.
-    pub beside_db: Vec<f64>,
     /// Gain of each further octave of force beside the contact law, dB; none where forces do not
     /// differ by a factor of 2.
     pub force_db_per_octave: Option<f64>,
@@ -65,12 +64,7 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool, level_db: f64
     let (low, high) =
         levels.iter().fold((usize::MAX, 0), |(low, high), level| (low.min(level.band), high.max(level.band)));
     if levels.is_empty() {
-        return Parted {
-            bands: Vec::new(),
-            colour: Vec::new(),
-            beside_db: Vec::new(),
-            force_db_per_octave: None,
-        };
+        return Parted::default();
     }
     let bands = high - low + 1;
     let nodes = if with_colour { NODES.len() } else { 0 };
@@ -142,20 +136,11 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool, level_db: f64
         normal[(i, i)] += 1e-9;
     }
     let Some(inverse) = normal.clone().try_inverse() else {
-        return Parted {
-            bands: Vec::new(),
-            colour: Vec::new(),
-            beside_db: Vec::new(),
-            force_db_per_octave: None,
-        };
+        return Parted::default();
     };
     let solved = &inverse * right;
     let seen = |i: usize| data[(i, i)] > 0.0;
     let band = |i: usize| Band { band: low + i, level_db: solved[i], se_db: inverse[(i, i)].sqrt() };
-    let beside_db = levels
-        .iter()
-        .map(|level| level.level_db - row(level).iter().map(|(i, w)| w * solved[*i]).sum::<f64>())
-        .collect();
     let colour = (0..nodes)
         .filter(|i| seen(bands + i))
         .map(|i| Colour {
@@ -167,7 +152,6 @@ pub fn part(levels: &[Level], groups: &[Group], with_colour: bool, level_db: f64
     Parted {
         bands: (0..bands).filter(|i| seen(*i)).map(band).collect(),
         colour,
-        beside_db,
         force_db_per_octave: with_force.then(|| solved[unknowns - 1]),
     }
 }

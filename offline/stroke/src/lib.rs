@@ -20,19 +20,23 @@
 
 pub mod checks;
 pub mod colour;
+mod compliance;
 pub mod floor;
 pub mod lines;
 pub mod models;
 pub mod octave_noise;
 pub mod octaves;
+pub mod pattern;
 pub mod power_law;
 mod profile;
 pub mod recording;
 pub mod relief;
+pub mod report;
 pub mod surface;
 pub mod tool;
 mod wander;
 
+pub use compliance::Compliance;
 pub use recording::{Stroke, Track};
 pub use surface::{Options, StrokeSurface, fit};
 pub use tool::{Quantity, Tool};

@@ -13,10 +13,11 @@ use crate::profile::{Profile, at_places, felt_height, held, spectrum};
 use crate::recording::Stroke;
 use crate::tool::{Quantity, Tool};
 use crate::wander::{follow, hump};
+use serde::Serialize;
 use std::f64::consts::PI;
 
 /// Line of a stroke.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Line {
     /// Period, m.
     pub period_m: f64,

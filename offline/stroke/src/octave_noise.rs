@@ -3,7 +3,7 @@
 
 use crate::hann;
 use crate::relief::wavenumber;
-use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights, Relief};
+use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights};
 use asperity_dsp::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
@@ -20,39 +20,28 @@ pub fn wavelength_m(octave: usize) -> f64 {
 const LENGTH: usize = 1 << 15;
 const STEPS_A_CELL: f64 = 16.0;
 
-/// Spectrum of one octave of the noise along a line, over its rms squared times its wavelength, by
-/// third octaves of q λ; [`kernel_origin`] is the place of 1.
-#[must_use]
-pub fn octave_kernel() -> &'static [f64] {
-    static KERNEL: OnceLock<Vec<f64>> = OnceLock::new();
-    KERNEL.get_or_init(|| {
-        const ROUGHNESS: f64 = 0.5;
-        let law = Relief {
-            rms_at_1mm_m: 1e-6,
-            outer_scale_m: f64::INFINITY,
-            tip_radius_m: 0.0,
-            longest_wavelength_m: f64::INFINITY,
-        };
-        let field = FractalNoise::new(61);
-        let density =
-            octave_spectrum(&field, &OctaveWeights::new(&law), ROUGHNESS, KERNEL_OCTAVE, KERNEL_BANDS);
-        let wave_m = wavelength_m(KERNEL_OCTAVE);
-        let rms_m = law.rms_at_1mm_m
-            * law.share(wave_m, ROUGHNESS)
-            * (wave_m / 1e-3).powf(0.5 * (FractalNoise::alpha(ROUGHNESS) - 1.0));
-        density.iter().map(|density| density / (rms_m * rms_m * wave_m)).collect()
-    })
-}
+/// Octave that the shape of all is read from, and third octaves about it.
+const READ: usize = 5;
+const READ_BANDS: Range<usize> = 5..46;
 
-/// Place in the kernel where the wavelength is the octave's own.
-#[must_use]
-pub fn kernel_origin() -> f64 {
-    -10.0 * wavelength_m(KERNEL_OCTAVE).log10() - KERNEL_BANDS.start as f64
+/// Density of an octave of the noise along a line over its rms squared and its wavelength λ, at
+/// q λ.
+pub(crate) fn octave_shape(waves: f64) -> f64 {
+    static SHAPE: OnceLock<Vec<f64>> = OnceLock::new();
+    let shape = SHAPE.get_or_init(|| {
+        let weights = OctaveWeights::pinned(1e-6, f64::INFINITY);
+        let own_m = weights.rms_m(1.0)[READ];
+        let density = octave_spectrum(&FractalNoise::new(61), &weights, 1.0, READ, READ_BANDS);
+        density.iter().map(|density| density / (own_m * own_m * wavelength_m(READ))).collect()
+    });
+    let place = 10.0 * (waves / wavelength_m(READ)).log10() - READ_BANDS.start as f64;
+    let below = place.floor();
+    if below < 0.0 || below as usize + 1 >= shape.len() {
+        return 0.0;
+    }
+    let (a, b) = (shape[below as usize].max(1e-12), shape[below as usize + 1].max(1e-12));
+    a * (b / a).powf(place - below)
 }
-
-/// Octave that the kernel is read from, and third octaves about it.
-const KERNEL_OCTAVE: usize = 5;
-const KERNEL_BANDS: Range<usize> = 5..46;
 
 /// Density of one octave of the noise at third octaves of wavenumbers, m³.
 pub(crate) fn octave_spectrum(

@@ -19,9 +19,11 @@ const MOST_DB: f64 = 60.0;
 const ROUNDS: usize = 300;
 /// Third octaves of the target: 31 mm to 20 µm.
 const FITTED: Range<usize> = 15..47;
+/// Third octaves whose level is known: the lowest frequencies of fast strokes are below.
+const KNOWN: Range<usize> = 10..48;
 
 /// Micro-relief of a surface as a scene file says it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MicroRelief {
     /// Roughness, 0–1: sets the law's slope.
     pub roughness: f64,
@@ -29,12 +31,22 @@ pub struct MicroRelief {
     pub micro_relief_m: f64,
     /// Gains of the octaves over the law, coarsest first, dB.
     pub octaves_db: [f64; OCTAVES],
+    /// Levels of the third octaves [`KNOWN`] as it plays under the tip, dB re 1 m³.
+    played_db: Vec<f64>,
+}
+
+impl MicroRelief {
+    /// Level of a third octave as it plays under the tip, dB re 1 m³.
+    #[must_use]
+    pub fn level_db(&self, band: usize) -> f64 {
+        self.played_db[band.clamp(KNOWN.start, KNOWN.end - 1) - KNOWN.start]
+    }
 }
 
 /// Octaves that come to the spectrum under a tip.
 #[must_use]
 pub fn playing(spectrum: &Spectrum<'_>, law: &PowerLaw, tip_radius_m: f64) -> MicroRelief {
-    let roughness = ((2.5 - law.alpha) / 1.5).clamp(0.0, 1.0);
+    let roughness = law.roughness();
     let micro_relief_m = (law.at_1mm_m / growth(roughness)).clamp(1e-9, 1e-3);
     let weights = OctaveWeights::new(&Relief {
         rms_at_1mm_m: micro_relief_m,
@@ -44,16 +56,20 @@ pub fn playing(spectrum: &Spectrum<'_>, law: &PowerLaw, tip_radius_m: f64) -> Mi
     });
     let field = FractalNoise::new(61);
     let own: Vec<Vec<f64>> =
-        (0..OCTAVES).map(|octave| octave_spectrum(&field, &weights, roughness, octave, FITTED)).collect();
+        (0..OCTAVES).map(|octave| octave_spectrum(&field, &weights, roughness, octave, KNOWN)).collect();
+    let first = FITTED.start - KNOWN.start;
     let target: Vec<f64> = FITTED.map(|band| 10f64.powf(0.1 * spectrum.at(band as f64))).collect();
+    let sum = |own: &[Vec<f64>], gains: &[f64; OCTAVES]| -> Vec<f64> {
+        let at = |k: usize| own.iter().zip(gains).map(|(own, gain)| own[k] * gain).sum::<f64>().max(1e-60);
+        (0..KNOWN.len()).map(at).collect()
+    };
     let mut gains = [1.0f64; OCTAVES];
     for _ in 0..ROUNDS {
-        let model: Vec<f64> = (0..target.len())
-            .map(|k| own.iter().zip(&gains).map(|(own, gain)| own[k] * gain).sum::<f64>().max(1e-60))
-            .collect();
+        let model = sum(&own, &gains);
+        let model = &model[first..];
         for (own, gain) in own.iter().zip(&mut gains) {
             let (mut sum, mut whole) = (0.0, 1e-12);
-            for (k, own) in own.iter().enumerate() {
+            for (k, own) in own[first..].iter().take(target.len()).enumerate() {
                 let share = own * *gain / model[k];
                 sum += share * (target[k] / model[k]).ln();
                 whole += share;
@@ -66,5 +82,6 @@ pub fn playing(spectrum: &Spectrum<'_>, law: &PowerLaw, tip_radius_m: f64) -> Mi
         roughness,
         micro_relief_m,
         octaves_db: gains.map(|gain| crate::db(gain).clamp(-MOST_DB, MOST_DB)),
+        played_db: sum(&own, &gains).into_iter().map(crate::db).collect(),
     }
 }

@@ -1,15 +1,16 @@
 //! Power law of the ground under a tip.
 //!
 //! ```text
-//! S(q) = a² c q^−α, flat beyond the outer scale; each octave less what the tip does not follow
+//! S(q) = a² c q^−α, flat beyond the outer scale; under a tip the engine's own octaves
 //! ```
 //! Gauss–Newton over exponent and level for every outer scale, at once or over octaves; an outer
 //! scale has to earn its place.
 
 use crate::db;
-use crate::octave_noise::{kernel_origin, octave_kernel, wavelength_m};
+use crate::octave_noise::{octave_shape, wavelength_m};
 use crate::relief::{Band, wavenumber};
-use asperity_dsp::fractal_noise::{OCTAVES, Relief, growth};
+use asperity_dsp::fractal_noise::{FractalNoise, OCTAVES, OctaveWeights, Relief, growth};
+use nalgebra::{Matrix3, Vector3};
 
 /// Power law of the ground under a tip: S(q) ∝ q^−α from the outer scale down.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,123 +29,137 @@ pub struct PowerLaw {
 
 /// Wavelength at which a power law has its level, m.
 const PINNED_M: f64 = 1e-3;
+/// Share of the amplitude that a tip must follow for a band to count.
+const LEAST_FOLLOWED: f64 = 0.3;
 
 impl PowerLaw {
     /// Share of an octave's amplitude that a tip follows.
-    #[must_use]
-    pub fn followed(&self, wavelength_m: f64, tip_radius_m: f64) -> f64 {
-        let roughness = ((2.5 - self.alpha) / 1.5).clamp(0.0, 1.0);
-        let relief = Relief {
-            rms_at_1mm_m: self.at_1mm_m / growth(roughness),
-            outer_scale_m: f64::INFINITY,
-            tip_radius_m,
-            longest_wavelength_m: f64::INFINITY,
-        };
+    fn followed(&self, wavelength_m: f64, tip_radius_m: f64) -> f64 {
+        let roughness = self.roughness();
+        let relief = self.relief(f64::INFINITY, tip_radius_m);
         relief.share(wavelength_m, roughness) / growth(roughness)
     }
 
-    /// Density of the felt height under a tip, m³: the engine's octaves, each as broad as its noise
-    /// is.
-    fn density_under(&self, q: f64, tip_radius_m: f64) -> f64 {
-        let kernel = octave_kernel();
-        let mut density = 0.0;
-        for octave in 0..OCTAVES {
-            let wavelength_m = wavelength_m(octave);
-            let place = 10.0 * (q * wavelength_m).log10() + kernel_origin();
-            let below = place.floor();
-            if below < 0.0 || below as usize + 1 >= kernel.len() {
-                continue;
-            }
-            let (a, b) = (kernel[below as usize].max(1e-12), kernel[below as usize + 1].max(1e-12));
-            let shape = a * (b / a).powf(place - below);
-            let beyond = wavelength_m / self.outer_scale_m;
-            let flat = if self.is_gradual { (1.0 + beyond * beyond).sqrt() } else { beyond.max(1.0) };
-            let rms_m = self.at_1mm_m
-                * (wavelength_m / PINNED_M).powf(0.5 * (self.alpha - 1.0))
-                * flat.powf(-0.5 * self.alpha)
-                * self.followed(wavelength_m, tip_radius_m);
-            density += rms_m * rms_m * wavelength_m * shape;
-        }
-        density
+    /// Roughness whose exponent is the nearest.
+    #[must_use]
+    pub fn roughness(&self) -> f64 {
+        ((2.5 - self.alpha) / 1.5).clamp(0.0, 1.0)
     }
 
-    /// Density of the felt height in a third octave, dB re 1 m³.
-    #[must_use]
-    pub fn level_db(&self, band: usize, tip_radius_m: f64) -> f64 {
+    fn relief(&self, outer_scale_m: f64, tip_radius_m: f64) -> Relief {
+        Relief {
+            rms_at_1mm_m: self.at_1mm_m / growth(self.roughness()),
+            outer_scale_m,
+            tip_radius_m,
+            longest_wavelength_m: f64::INFINITY,
+        }
+    }
+
+    /// Rms squared of the engine's octaves under a tip, times their wavelengths, m³.
+    fn octaves(&self, tip_radius_m: f64) -> [f64; OCTAVES] {
+        let roughness = self.roughness();
+        let rms_m = OctaveWeights::new(&self.relief(self.outer_scale_m, tip_radius_m)).rms_m(roughness);
+        // Exponents beyond those of a roughness.
+        let rising = self.alpha - FractalNoise::alpha(roughness);
+        std::array::from_fn(|i| {
+            let wave_m = wavelength_m(i);
+            rms_m[i] * rms_m[i] * (wave_m / PINNED_M).powf(rising) * wave_m
+        })
+    }
+
+    /// Density of the ground itself in a third octave, dB re 1 m³.
+    fn bare_db(&self, band: usize) -> f64 {
         let q = wavenumber(band);
         let knee = 1.0 / self.outer_scale_m;
-        let flat = |q: f64| if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
+        let flat = if self.is_gradual { q.hypot(knee) } else { q.max(knee) };
         // Rms of an octave about 1 mm: ∫ S dq from q/√2 to q√2.
         let octave = octave_integral(self.alpha) / PINNED_M;
-        if tip_radius_m > 0.0 {
-            return db(self.density_under(q, tip_radius_m));
-        }
-        db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat(q) * PINNED_M).log10()
+        db(self.at_1mm_m.powi(2) / octave) - 10.0 * self.alpha * (flat * PINNED_M).log10()
     }
 
     /// Law through the bands, and what a tip of this radius leaves of it.
     #[must_use]
     pub fn through(bands: &[Band], tip_radius_m: f64) -> Self {
-        let mut best: Option<(f64, Self)> = None;
+        // An outer scale is a constant more: it has to earn it.
+        const EARNED: f64 = 9.0;
+        let seen = Seen::new(bands, tip_radius_m);
         let longest = bands.first().map_or(0, |band| band.band);
-        let knees = (longest..longest + 12).map(|band| 1.0 / wavenumber(band));
-        let scales = std::iter::once((f64::INFINITY, false))
-            .chain(knees.flat_map(|scale_m| [(scale_m, false), (scale_m, true)]));
-        for (outer_scale_m, is_gradual) in scales {
-            let (misfit, law) = Self::fitted(bands, tip_radius_m, outer_scale_m, is_gradual);
-            // An outer scale is a constant more: it has to earn it.
-            let misfit = misfit + if outer_scale_m.is_finite() { 9.0 } else { 0.0 };
-            if best.as_ref().is_none_or(|(least, _)| misfit < *least) {
-                best = Some((misfit, law));
-            }
-        }
-        best.map_or(
-            Self {
-                alpha: 2.0,
-                alpha_se: f64::INFINITY,
-                at_1mm_m: 0.0,
-                outer_scale_m: f64::INFINITY,
-                is_gradual: false,
-            },
-            |(_, law)| law,
-        )
+        let scale_m = |further: usize| 1.0 / wavenumber(longest + further);
+        // The engine's octaves turn flat over octaves, not at once.
+        let knees = (0..if tip_radius_m > 0.0 { 0 } else { 12 }).map(|further| (scale_m(further), false));
+        let gradual = [2, 6, 10].map(|further| (scale_m(further), true));
+        let bare = seen.fitted(f64::INFINITY, false);
+        let with_scale = knees.chain(gradual).map(|(scale_m, is_gradual)| seen.fitted(scale_m, is_gradual));
+        let better = |best: (f64, Self), now: (f64, Self)| {
+            if now.0 + EARNED < best.0 { (now.0 + EARNED, now.1) } else { best }
+        };
+        with_scale.fold(bare, better).1
+    }
+}
+
+/// Bands that a law is laid through.
+struct Seen<'a> {
+    bands: &'a [Band],
+    tip_radius_m: f64,
+    /// Density of each of the engine's octaves over its rms squared and wavelength, in each band.
+    shapes: Vec<[f64; OCTAVES]>,
+}
+
+impl<'a> Seen<'a> {
+    fn new(bands: &'a [Band], tip_radius_m: f64) -> Self {
+        let shapes =
+            |band: &Band| std::array::from_fn(|i| octave_shape(wavenumber(band.band) * wavelength_m(i)));
+        let shapes = if tip_radius_m > 0.0 { bands.iter().map(shapes).collect() } else { Vec::new() };
+        Self { bands, tip_radius_m, shapes }
     }
 
-    /// Gauss–Newton over exponent and level.
-    fn fitted(bands: &[Band], tip_radius_m: f64, outer_scale_m: f64, is_gradual: bool) -> (f64, Self) {
-        let pinned = bands.iter().min_by_key(|band| band.band.abs_diff(30));
+    /// Levels of the bands, dB re 1 m³: each octave as broad as the engine's noise is.
+    fn levels_db(&self, law: &PowerLaw) -> Vec<f64> {
+        if self.shapes.is_empty() {
+            return self.bands.iter().map(|band| law.bare_db(band.band)).collect();
+        }
+        let octaves = law.octaves(self.tip_radius_m);
+        let level = |shapes: &[f64; OCTAVES]| db(shapes.iter().zip(&octaves).map(|(a, b)| a * b).sum());
+        self.shapes.iter().map(level).collect()
+    }
+
+    /// Gauss–Newton over exponent, level and, where it turns flat gradually, outer scale.
+    fn fitted(&self, outer_scale_m: f64, is_gradual: bool) -> (f64, PowerLaw) {
+        let pinned = self.bands.iter().min_by_key(|band| band.band.abs_diff(30));
         let level_m = pinned.map_or(1e-6, |band| 10f64.powf(0.05 * band.level_db) * 20.0);
         let mut law =
-            Self { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: level_m, outer_scale_m, is_gradual };
+            PowerLaw { alpha: 2.0, alpha_se: f64::INFINITY, at_1mm_m: level_m, outer_scale_m, is_gradual };
+        let moved = |law: &PowerLaw, step: Vector3<f64>| PowerLaw {
+            alpha: (law.alpha + step[0].clamp(-0.5, 0.5)).clamp(-1.0, 5.0),
+            at_1mm_m: law.at_1mm_m * 10f64.powf(0.05 * step[1].clamp(-10.0, 10.0)),
+            outer_scale_m: (law.outer_scale_m * step[2].clamp(-0.5, 0.5).exp()).clamp(1e-4, 10.0),
+            ..*law
+        };
         let mut misfit = f64::INFINITY;
         for _ in 0..30 {
-            let mut normal = [0.0f64; 5];
+            let own = self.levels_db(&law);
+            const BY: f64 = 0.01;
+            let other = |i: usize| self.levels_db(&moved(&law, Vector3::ith(i, BY)));
+            let free = if is_gradual { 3 } else { 2 };
+            let others: Vec<Vec<f64>> = (0..free).map(other).collect();
+            let (mut normal, mut right) = (Matrix3::identity() * 1e-9, Vector3::zeros());
             misfit = 0.0;
-            for band in bands {
-                let weight = band.se_db.hypot(0.1).powi(-2);
-                let at = |law: &Self| law.level_db(band.band, tip_radius_m);
-                let own = at(&law);
-                let by_alpha = (at(&Self { alpha: law.alpha + 0.01, ..law }) - own) / 0.01;
-                let by_level = at(&Self { at_1mm_m: law.at_1mm_m * 10f64.powf(0.005), ..law }) - own;
-                let by_level = by_level / 0.1;
-                let beside = band.level_db - own;
+            for (k, band) in self.bands.iter().enumerate() {
                 // Far under a tip the law of the tip is a guess.
-                let seen = law.followed(1.0 / wavenumber(band.band), tip_radius_m);
-                let weight = if seen > 0.3 { weight } else { 0.0 };
-                normal[0] += weight * by_alpha * by_alpha;
-                normal[1] += weight * by_alpha * by_level;
-                normal[2] += weight * by_level * by_level;
-                normal[3] += weight * by_alpha * beside;
-                normal[4] += weight * by_level * beside;
+                if law.followed(1.0 / wavenumber(band.band), self.tip_radius_m) < LEAST_FOLLOWED {
+                    continue;
+                }
+                let mut by = Vector3::zeros();
+                others.iter().enumerate().for_each(|(i, other)| by[i] = (other[k] - own[k]) / BY);
+                let (weight, beside) = (band.se_db.hypot(0.1).powi(-2), band.level_db - own[k]);
+                normal += weight * by * by.transpose();
+                right += weight * beside * by;
                 misfit += weight * beside * beside;
             }
-            let [aa, al, ll, a, l] = normal;
-            let determinant = (aa * ll - al * al).max(1e-12);
-            let step = [(ll * a - al * l) / determinant, (aa * l - al * a) / determinant];
-            law.alpha = (law.alpha + step[0].clamp(-0.5, 0.5)).clamp(-1.0, 5.0);
-            law.at_1mm_m *= 10f64.powf(0.05 * step[1].clamp(-10.0, 10.0));
-            law.alpha_se = (ll / determinant).sqrt();
-            if step[0].abs() < 1e-5 && step[1].abs() < 1e-4 {
+            let Some(inverse) = normal.try_inverse() else { break };
+            let step = inverse * right;
+            law = PowerLaw { alpha_se: inverse[(0, 0)].sqrt(), ..moved(&law, step) };
+            if step.abs().max() < 1e-4 {
                 break;
             }
         }
@@ -165,7 +180,6 @@ fn octave_integral(alpha: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::octave_noise::octave_spectrum;
-    use asperity_dsp::fractal_noise::{FractalNoise, OctaveWeights};
 
     // The engine's own noise, its octaves weighed for a tip.
     #[test]

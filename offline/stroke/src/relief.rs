@@ -10,6 +10,7 @@
 use crate::db;
 use crate::floor::Floor;
 use crate::recording::{STANDSTILL_M_S, Window};
+use serde::Serialize;
 
 /// Third octaves of wavenumbers: centre i is at 10^(i/10) 1/m.
 pub const BANDS: usize = 60;
@@ -46,7 +47,7 @@ pub struct Level {
 }
 
 /// Windows of one stroke at one speed and force.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
     /// Stroke, by its place.
     pub stroke: usize,
@@ -56,6 +57,7 @@ pub struct Group {
     pub force_n: f64,
     /// Time, s.
     pub seconds: f64,
+    #[serde(skip)]
     members: Vec<usize>,
 }
 

@@ -3,6 +3,7 @@
 use crate::StrokeError;
 use crate::checks;
 use crate::colour::{self, Colour, LEAST_SPEEDS};
+use crate::compliance::{self, Compliance};
 use crate::db;
 use crate::floor::{self, Floor};
 use crate::lines::{self, Line};
@@ -51,7 +52,10 @@ pub struct StrokeSurface {
     pub force_db_per_octave: Option<f64>,
     /// Coefficient of friction, where something told it.
     pub friction: Option<f64>,
-    /// Share of the variance of recorded third-octave levels that the surface explains.
+    /// Sinking of the ground, where a displacement under a changing force told it.
+    pub compliance: Option<Compliance>,
+    /// Share of the variance of recorded third-octave levels that the surface as it plays explains,
+    /// with the rig's colour.
     pub explained: f64,
     /// Rms of what it leaves, dB.
     pub beside_db: f64,
@@ -61,7 +65,7 @@ pub struct StrokeSurface {
     pub relief: MicroRelief,
     /// Speeds, forces and times that were recorded.
     pub groups: Vec<Group>,
-    /// Recorded and predicted levels of third octaves at each group: (group, Hz, dB, dB).
+    /// Recorded and played levels of third octaves at each group: (group, Hz, dB, dB).
     pub levels: Vec<(usize, f64, f64, f64)>,
     /// Remarks on the recording.
     pub warnings: Vec<String>,
@@ -114,11 +118,13 @@ pub fn fit(
     };
     let found: Vec<lines::Lines> = strokes.iter().map(|stroke| lines::find(stroke, &options.tool)).collect();
     let (common, wander) = common_lines(strokes, &found, &mut warnings);
+    let compliance = compliance::find(strokes, &options.tool, &mut warnings);
     let friction = tangential_n.and_then(|force| friction(strokes, force, &mut warnings));
     let mut surface =
         solve((&all, &floors), options, (low_hz, HIGH_HZ), &common, colour::LEVEL_DB, warnings)?;
     surface.wander = wander;
     surface.friction = friction;
+    surface.compliance = compliance;
     Ok(surface)
 }
 
@@ -279,14 +285,15 @@ fn solve(
             tool.uncertainty_db(middle.speed_m_s / octave.wavelength_m, middle.force_n, options.probe_error)
         })
         .collect();
+    let relief = octaves::playing(&spectrum, &law, tip_radius_m);
+    let rig: Vec<(f64, f64)> = parted.colour.iter().map(|c| (c.frequency_hz, c.gain_db)).collect();
     let recorded: Vec<(usize, f64, f64, f64)> = levels
         .iter()
-        .zip(&parted.beside_db)
-        .map(|(level, beside)| {
+        .map(|level| {
             let group = &groups[level.group];
-            let response = tool.power_at(level.frequency_hz, group.force_n);
-            let own = level.level_db + db(response / group.speed_m_s);
-            (level.group, level.frequency_hz, own, own - beside)
+            let through = db(tool.power_at(level.frequency_hz, group.force_n) / group.speed_m_s);
+            let played = relief.level_db(level.band) + interpolated(&rig, level.frequency_hz);
+            (level.group, level.frequency_hz, level.level_db + through, played + through)
         })
         .collect();
     let count = recorded.len().max(1) as f64;
@@ -297,7 +304,7 @@ fn solve(
         warnings.push(format!("levels change by {gain:+.1} dB a doubling of force beside the probe's law: soft ground, or another probe"));
     }
     Ok(StrokeSurface {
-        relief: octaves::playing(&spectrum, &law, tip_radius_m),
+        relief,
         bands: parted.bands,
         octaves,
         probe_se_db,
@@ -307,6 +314,7 @@ fn solve(
         colour: parted.colour,
         force_db_per_octave: parted.force_db_per_octave,
         friction: None,
+        compliance: None,
         explained: (1.0 - left / variance.max(1e-12)).max(0.0),
         beside_db: left.sqrt(),
         lift,

@@ -4,4 +4,5 @@ mod colour;
 mod lines;
 mod made;
 mod octaves;
+mod quantities;
 mod sound;

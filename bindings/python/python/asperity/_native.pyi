@@ -21,6 +21,7 @@ __all__ = [
     "fit",
     "from_normals",
     "from_photo",
+    "from_stroke",
     "metamer",
     "modes",
     "names_of",
@@ -62,6 +63,10 @@ def from_photo(
     method: str | None = None, bright_is_deep: bool = False, calibration: float = 1.0, exaggerate: float = 1.0,
     progress: _Progress = None,
 ) -> tuple[_F64, _F64, dict[str, Any]]: ...
+def from_stroke(
+    strokes: list[tuple[_F64, float, _F64, _F64]], probe: str, *, displacement: bool, ring: _Path | None = None,
+    tangential_n: list[float] | None = None, colour: list[tuple[float, float]] | None = None, probe_error: float,
+) -> tuple[str, tuple[_F64, float] | None, float]: ...
 def metamer(
     look: _F64, feel: _F64, *, iterations: int | None = None, progress: _Progress = None
 ) -> tuple[_F64, dict[str, Any]]: ...

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from asperity import _native
 from asperity._progress import Progress, shown
+from asperity._scene import Surface, _known
 
 Image = npt.ArrayLike | str | os.PathLike[str]
 
@@ -118,6 +119,81 @@ def from_photo(
             bright_is_deep=bright_is_deep, calibration=calibration, exaggerate=exaggerate, progress=tell,
         )  # fmt: skip
     return heights_m, {**told, "roughness_map": roughness, "colour": colour}
+
+
+_UNITS = {"m_s2": 1.0, "g": 9.80665, "um": 1e-6}
+_SIDE_M = 0.5
+
+
+def from_stroke(
+    stroke: npt.ArrayLike | Sequence[npt.ArrayLike],
+    rate: float,
+    *,
+    speed: npt.ArrayLike | Sequence[npt.ArrayLike],
+    force: npt.ArrayLike | Sequence[npt.ArrayLike],
+    probe: str | Mapping[str, Any] = "stylus",
+    unit: str = "m_s2",
+    tangential: npt.ArrayLike | None = None,
+    ring: str | os.PathLike[str] | None = None,
+    colour: npt.ArrayLike | None = None,
+    probe_error: float = 0.1,
+    name: str = "stroked",
+) -> tuple[Surface, dict[str, Any]]:
+    """A surface of a recorded stroke, and every estimate with its standard error: those of `asperity texture from-stroke`.
+
+    stroke: (samples,) or (axes, samples) of an accelerometer on the tool; several strokes over one surface are a list or tuple of those.
+    rate: Hz. speed, force: m/s and N, a number or an array a sample; one for each stroke, as a list or tuple, or one for all. probe: what
+    stroked, a preset of `names_of("probe")` or a table. unit: m_s2, g, or um (displacement). tangential: force along the surface, N, a
+    sample each of the first stroke: tells friction. ring: modes file of the body, whose sound the stroke then is. colour: (n, 2) of Hz and
+    dB, the rig's response. probe_error: relative error of each of the probe's constants, for the told errors.
+
+    The surface plays at any speed and force: `asp.stroke(surface, speed=..., force=..., probe=probe)`. Told are `octaves`, `bands`,
+    `alpha`, `alpha_se`, `lines`, `friction`, `explained`, `recorded`, `warnings` and the rest of `surface.json`.
+
+    Raises ValueError in the engine's words where the recording is no stroke or the model does not explain it.
+    """
+    if unit not in _UNITS:
+        raise ValueError(f'unit: "{unit}" is unknown; must be one of {", ".join(_UNITS)}')
+    if isinstance(probe, str):
+        _known("probe", probe)
+    several = isinstance(stroke, list | tuple) and len(stroke) > 0 and np.ndim(stroke[0]) > 0
+    strokes = list(stroke) if several else [stroke]  # type: ignore[arg-type]
+    speeds, forces = (_each(track, len(strokes), what) for track, what in ((speed, "speed"), (force, "force")))
+    recorded = []
+    for place, axes in enumerate(strokes):
+        array = np.ascontiguousarray(np.atleast_2d(np.asarray(axes, dtype=np.float64)) * _UNITS[unit])
+        tracks = [_track(track, array, what) for track, what in ((speeds[place], "speed"), (forces[place], "force"))]
+        # Forth and back is one speed along the path.
+        recorded.append((array, float(rate), np.abs(tracks[0]) if tracks[0].size > 1 else tracks[0], tracks[1]))
+    table = {"preset": probe} if isinstance(probe, str) else dict(probe)
+    report, pattern, outer_scale_m = _native.from_stroke(
+        recorded, json.dumps(table), displacement=unit == "um", ring=ring,
+        tangential_n=None if tangential is None else [float(x) for x in np.ravel(tangential)],
+        colour=None if colour is None else [(float(hz), float(db)) for hz, db in np.asarray(colour)], probe_error=probe_error,
+    )  # fmt: skip
+    told: dict[str, Any] = json.loads(report)
+    heights, side_m = pattern if pattern is not None else (np.zeros((4, 4)), _SIDE_M)
+    keys = {key: told[key] for key in ("micro_relief_m", "micro_relief_octaves_db", "friction", "compliance_m_n") if told[key] is not None}
+    if pattern is not None:
+        keys["wrap"] = "mirror"
+    return Surface(heights, side_m, roughness=told["roughness"], name=name, outer_scale_m=outer_scale_m, **keys), told
+
+
+def _each(tracks: Any, count: int, what: str) -> list[Any]:
+    """A track for each stroke."""
+    if not isinstance(tracks, list | tuple):
+        return [tracks] * count
+    if len(tracks) != count:
+        raise ValueError(f"{what}: has {len(tracks)} entries for {count} strokes; give one for all, or one for each")
+    return list(tracks)
+
+
+def _track(track: npt.ArrayLike, axes: npt.NDArray[np.float64], what: str) -> npt.NDArray[np.float64]:
+    """One number, or one a sample."""
+    values = np.ascontiguousarray(np.ravel(np.asarray(track, dtype=np.float64)))
+    if axes.ndim != 2 or values.size not in (1, axes.shape[-1]):
+        raise ValueError(f"{what}: has {values.size} values beside a stroke of the shape {axes.shape}; give one, or one a sample")
+    return values
 
 
 def compare(

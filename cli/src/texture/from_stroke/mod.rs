@@ -8,10 +8,11 @@ mod scene;
 use super::positive;
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use asperity_stroke::report::Report;
 use asperity_stroke::{Options as FitOptions, StrokeError, StrokeSurface, Tool, models, surface};
 use clap::{Args, ValueEnum};
 use input::Recorded;
-use report::Report;
+use report::Written;
 use std::path::{Path, PathBuf};
 
 /// Make a touchable surface of recorded strokes
@@ -142,16 +143,16 @@ fn write(
     if let Some(ring) = &ring {
         text(&mut outputs, "ring.modes.json", ring)?;
     }
-    let map = (!found.lines.is_empty()).then(|| scene::pattern(found));
+    let map = scene::Map::of(found);
     text(&mut outputs, "scene.toml", &scene::scene(found, probe, map.as_ref(), ring.is_some()))?;
     text(&mut outputs, "stroke.jsonl", &scene::stroke(found, map.as_ref()))?;
     text(&mut outputs, "surface.svg", &picture::svg(&name(options), found))?;
     files.push("surface.json".to_owned());
     if let Some(map) = &map {
         files.push("displacement.png".to_owned());
-        outputs.write(&folder.join("displacement.png"), &map.png())?;
+        outputs.write(&folder.join("displacement.png"), &map.png)?;
     }
-    let report = Report::new(found, files);
+    let report = Written { report: Report::of(found), files };
     let json = serde_json::to_string_pretty(&report)
         .map_err(|error| CliError::new("surface.json", error, "please report it with the recording"))?;
     outputs.write(&folder.join("surface.json"), json.as_bytes())?;

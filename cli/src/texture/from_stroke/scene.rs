@@ -2,80 +2,38 @@
 
 use super::input::NamedProbe;
 use crate::error::CliError;
-use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights, Relief};
 use asperity_stroke::StrokeSurface;
 use asperity_stroke::octaves::OUTER_SCALE_M;
+use asperity_stroke::pattern::{Pattern, TEXELS};
 use asperity_stroke::tool::Ring;
-use std::f64::consts::PI;
 
 /// Side of a surface without lines, m: longer than the stroke.
 const SIDE_M: f64 = 0.5;
 /// Length of the stroke, s, and its events a second.
 const SECONDS: f64 = 4.0;
 const EVENTS_HZ: f64 = 60.0;
-/// Texels of a map, and of the shortest line.
-const TEXELS: usize = 1024;
-const TEXELS_A_PERIOD: f64 = 14.0;
-/// Seed of the relief that is drawn into a map.
-const SEED: u64 = 61;
-
-/// Map of a surface with lines: they run along v, relief lies beneath.
-pub(super) struct Pattern {
+/// Map of a surface with lines as a scene names it.
+pub(super) struct Map {
     side_m: f64,
     relief_m: f64,
-    grey: Vec<u16>,
+    /// 16-bit greys as a PNG.
+    pub(super) png: Vec<u8>,
 }
 
-impl Pattern {
-    pub(super) fn png(&self) -> Vec<u8> {
-        asperity_plot::pixels::png16(TEXELS, TEXELS, &self.grey)
+impl Map {
+    pub(super) fn of(found: &StrokeSurface) -> Option<Self> {
+        let Pattern { side_m, height_m } = Pattern::of(found)?;
+        let (low, high) =
+            height_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        let relief_m = (high - low).max(1e-12);
+        let grey: Vec<u16> =
+            height_m.iter().map(|h| ((h - low) / relief_m * 65_535.0).round() as u16).collect();
+        Some(Self { side_m, relief_m, png: asperity_plot::pixels::png16(TEXELS, TEXELS, &grey) })
     }
-}
-
-/// Draws lines and relief. Mirrored at its edges the map goes on without a seam: it is cut at tops
-/// of the strongest line.
-pub(super) fn pattern(found: &StrokeSurface) -> Pattern {
-    let strongest_m = found.lines[0].period_m;
-    let shortest_m = found.lines.iter().map(|line| line.period_m).fold(f64::INFINITY, f64::min);
-    let periods = (shortest_m / TEXELS_A_PERIOD * TEXELS as f64 / strongest_m).round().max(2.0);
-    let side_m = periods * strongest_m;
-    let texel_m = side_m / TEXELS as f64;
-    // The map is ridden by the tip itself, so the relief goes in as no tip has ridden it.
-    let weights = OctaveWeights::new(&Relief {
-        rms_at_1mm_m: found.relief.micro_relief_m,
-        outer_scale_m: OUTER_SCALE_M,
-        tip_radius_m: 0.0,
-        longest_wavelength_m: f64::INFINITY,
-    })
-    .with_gains_db(&found.relief.octaves_db);
-    let field = FractalNoise::new(SEED);
-    let mut height_m = vec![0.0; TEXELS * TEXELS];
-    let (footprint_m, roughness) = (vec![texel_m; TEXELS], vec![found.relief.roughness; TEXELS]);
-    for (row, height_m) in height_m.chunks_mut(TEXELS).enumerate() {
-        let position_m: Vec<[f64; 2]> =
-            (0..TEXELS).map(|i| [texel_m * (i as f64 + 0.5), texel_m * (row as f64 + 0.5)]).collect();
-        let path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
-        field.add(&path, &roughness, &weights, height_m);
-        for line in &found.lines {
-            for (height_m, [x, _]) in height_m.iter_mut().zip(&position_m) {
-                *height_m += line.amplitude_m * (2.0 * PI * x / line.period_m).cos();
-            }
-        }
-    }
-    let (low, high) =
-        height_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-    let relief_m = (high - low).max(1e-12);
-    let grey = height_m.iter().map(|h| ((h - low) / relief_m * 65_535.0).round() as u16).collect();
-    Pattern { side_m, relief_m, grey }
 }
 
 /// Scene of one surface under the probe that recorded it; its channel is acceleration in m/s².
-pub(super) fn scene(
-    found: &StrokeSurface,
-    probe: &NamedProbe,
-    map: Option<&Pattern>,
-    has_ring: bool,
-) -> String {
+pub(super) fn scene(found: &StrokeSurface, probe: &NamedProbe, map: Option<&Map>, has_ring: bool) -> String {
     let side_m = map.map_or(SIDE_M, |map| map.side_m);
     let source = map.map_or(String::new(), |map| {
         format!("displacement = \"displacement.png\"\nrelief_m = {:?}\nwrap = \"mirror\"\n", map.relief_m)
@@ -86,14 +44,16 @@ pub(super) fn scene(
         "stock = \"plate\"\nsize_m = 0.3\nmaterial = \"wood\""
     };
     let octaves: Vec<String> = found.relief.octaves_db.iter().map(|db| format!("{db:.2}")).collect();
-    let friction = found.friction.map_or(String::new(), |mu| format!("friction = {mu:?}\n"));
+    let key = |name: &str, value: Option<f64>| value.map_or(String::new(), |x| format!("{name} = {x:?}\n"));
+    let friction = key("friction", found.friction);
+    let compliance = key("compliance_m_n", found.compliance.map(|compliance| compliance.m_n));
     format!(
         "# A surface from a recorded stroke, under the probe that recorded it.\n\
          contacts = \"stroke.jsonl\"\n\n\
          [[body]]\nname = \"body\"\n{body}\n\n\
          [[surface]]\nname = \"stroked\"\nbody = \"body\"\n{source}\
          width_m = {side_m:?}\nheight_m = {side_m:?}\nroughness = {:?}\nmicro_relief_m = {:?}\nouter_scale_m = {OUTER_SCALE_M:?}\n\
-         micro_relief_octaves_db = [{}]\n{friction}\n\
+         micro_relief_octaves_db = [{}]\n{friction}{compliance}\n\
          [probe]\n{}\n\
          [[actuator]]\noutput = \"acceleration\"\nfull_scale = 1.0\nhighpass_hz = 0.0\nlimit = false\n",
         found.relief.roughness,
@@ -104,7 +64,7 @@ pub(super) fn scene(
 }
 
 /// A stroke at the first speed and force that were recorded.
-pub(super) fn stroke(found: &StrokeSurface, map: Option<&Pattern>) -> String {
+pub(super) fn stroke(found: &StrokeSurface, map: Option<&Map>) -> String {
     let (speed, force) = (found.groups[0].speed_m_s, found.groups[0].force_n);
     let side_m = map.map_or(SIDE_M, |map| map.side_m);
     // Across the lines, a little aslant.

@@ -91,8 +91,13 @@ pub fn strength() -> Result<Found, String> {
         ("orthogonal_n", orthogonal),
         ("lateral_n", lateral),
     ]);
+    let rises = |name: &str| f64::from(ours[name].windows(2).all(|pair| pair[0] > pair[1]));
+    let all = ["acceleration_m_s2", "orthogonal_n", "lateral_n"].map(rises);
+    let ours: super::Columns =
+        ours.into_iter().chain([("rises_with_dimension".to_owned(), all.to_vec())]).collect();
     let sentence = "Printed are people's ratings, which rise with the dimension in all four renderings; so do the vibration of a \
                     fingertip and both forces here."
         .to_owned();
-    Ok((columns([("hurst", hurst.to_vec())]), ours, sentence))
+    let printed = columns([("hurst", hurst.to_vec()), ("rises_with_dimension", vec![1.0; 3])]);
+    Ok((printed, ours, sentence))
 }

@@ -4,6 +4,8 @@
 #![allow(dead_code, reason = "each user takes what it needs")]
 
 use asperity_dsp::rng::Rng;
+use asperity_evidence::reliefs::{Relief, square_distance};
+pub use asperity_evidence::reliefs::{SHAPES, Shape};
 use asperity_surface::raster::Raster;
 
 /// Squares outlined by lines, on a square lattice.
@@ -94,59 +96,10 @@ impl Framed {
     }
 }
 
-/// Distance of the rounded square's own shape from its centre: `half` on its border.
-fn square_distance(x: f64, y: f64, half: f64, radius: f64) -> f64 {
-    let (u, v) = (x.abs() - (half - radius), y.abs() - (half - radius));
-    let outside = u.max(0.0).hypot(v.max(0.0)) + u.max(v).min(0.0);
-    half + outside - radius
-}
-
-/// Shapes of the thesis' first experiment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
-    Spheres,
-    Ovals,
-    Quads,
-}
-
-pub const SHAPES: [Shape; 3] = [Shape::Spheres, Shape::Ovals, Shape::Quads];
-
 /// Heights, texels, of `across` shapes a side on a picture of `size`², and their translations.
-/// Every second row of ovals is moved by half.
 pub fn thesis_relief(shape: Shape, across: f64, size: usize) -> (Raster, [[f64; 2]; 2]) {
-    let period = size as f64 / across;
-    // 55 ovals on the area of 36 squares, 85 on that of 64: ten rows.
-    let row = if shape == Shape::Ovals { period * if across < 7.0 { 0.6 } else { 0.8 } } else { period };
-    let relief = Raster::from_fn(size, size, |x, y| {
-        let down = (y as f64 + 0.5) / row;
-        let shift = if shape == Shape::Ovals && down.floor() as i64 % 2 == 1 { 0.5 } else { 0.0 };
-        let along = (x as f64 + 0.5) / period + shift;
-        let (u, v) = ((along - along.floor() - 0.5) * period, (down - down.floor() - 0.5) * row);
-        match shape {
-            Shape::Spheres => cap(u.hypot(v), 0.45 * period),
-            Shape::Ovals => cap((u * row / period).hypot(v), 0.45 * row),
-            Shape::Quads => bevel(square_distance(u, v, 0.42 * period, 0.1 * period), 0.42 * period),
-        }
-    });
-    let truth = match shape {
-        Shape::Ovals => [[period, 0.0], [0.5 * period, row]],
-        _ => [[period, 0.0], [0.0, period]],
-    };
-    (relief, truth)
-}
-
-/// A segment of a sphere: 0 beyond `radius`.
-fn cap(r: f64, radius: f64) -> f64 {
-    let full = 1.2 * radius;
-    let above = |r: f64| (full * full - r * r).sqrt() - (full * full - radius * radius).sqrt();
-    if r < radius { above(r) } else { 0.0 }
-}
-
-/// A block with a rounded edge.
-fn bevel(distance: f64, half: f64) -> f64 {
-    let width = 0.15 * half;
-    let inside = ((half - distance) / width).clamp(0.0, 1.0);
-    2.0 * width * (1.0 - (1.0 - inside) * (1.0 - inside)).sqrt()
+    let relief = Relief { shape, across, size };
+    (Raster::from_fn(size, size, |x, y| relief.height(x, y)), relief.translations())
 }
 
 /// How bright a relief is under light from the front: 1/√(1 + p² + q²), the printed condition of
