@@ -4,6 +4,7 @@
 //! ```text
 //! F(t) = J/τ · p(t/τ)  →  mobility (`dsp::mobility`)  →  pad motion  →  the channel's high-pass  →  the channel's sum
 //! ```
+//! A channel that plays force has F(t) itself.
 //! Everything is linear, so all blows that one probe sends to one channel share a state, and
 //! nothing is computed while nothing moves.
 
@@ -11,7 +12,7 @@ use super::shared::Shared;
 use crate::link::message::Felt;
 use crate::model::stamp::Stamp;
 use crate::resource::bank::LONGEST_CONTACT_S;
-use asperity_dsp::actuator::{ContactOutput, ContactOutputState};
+use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::mobility::MobilityState;
 use asperity_surface::height_field::MAX_BLOCK;
@@ -19,6 +20,22 @@ use asperity_surface::height_field::MAX_BLOCK;
 /// Pairs of probe and channel that feel blows at the same time; a further one takes the place of
 /// the one struck first.
 const AT_ONCE: usize = 16;
+
+/// A sample of a blow: how the pad moves, and the force.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Blow {
+    pad_m: f64,
+    pad_velocity_m_s: f64,
+    force_n: f64,
+}
+
+impl Blow {
+    /// The quantity that a channel plays of it.
+    pub(crate) fn felt(&self, design: &ContactOutput, state: &mut ContactOutputState) -> f64 {
+        let played = if design.quantity() == Quantity::Force { self.force_n } else { self.pad_m };
+        state.tick(design, played, self.pad_velocity_m_s)
+    }
+}
 
 /// Blows felt at present, in memory made at the start.
 pub(crate) struct Blows {
@@ -76,7 +93,7 @@ impl Blows {
         shared: &Shared,
         position: u64,
         n: usize,
-        mut add: impl FnMut(usize, &mut ContactOutputState, &[[f64; 2]]),
+        mut add: impl FnMut(usize, &mut ContactOutputState, &[Blow]),
     ) {
         if self.busy == 0 {
             return;
@@ -88,10 +105,12 @@ impl Blows {
             // that much ahead, it is undelayed.
             let ahead = position + 1 + shared.row_latency as u64;
             let mask = pair.ring.len() - 1;
-            let mut moves = [[0.0; 2]; MAX_BLOCK];
+            let mut moves = [Blow::default(); MAX_BLOCK];
             for (i, moved) in moves[..n].iter_mut().enumerate() {
                 let cell = &mut pair.ring[(ahead as usize).wrapping_add(i) & mask];
-                *moved = pair.state.tick(design, std::mem::take(cell) * shared.sample_rate_hz);
+                let force_n = std::mem::take(cell) * shared.sample_rate_hz;
+                let [pad_m, pad_velocity_m_s] = pair.state.tick(design, force_n);
+                *moved = Blow { pad_m, pad_velocity_m_s, force_n };
             }
             if let Some(output) = &mut pair.output {
                 add(channel, output, &moves[..n]);

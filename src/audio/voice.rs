@@ -303,9 +303,16 @@ impl Voice {
             }
             felt = rows;
         }
-        if has_tip {
+        let pushed = output.quantity() == Quantity::Force;
+        if has_tip || pushed {
             for (row, felt) in tip_rows.iter_mut().zip(felt) {
                 (row.pad_m, row.pad_velocity_m_s) = (felt.pad_m, felt.pad_velocity_m_s);
+                if !has_tip {
+                    row.contact_force_n = felt.contact_force_n;
+                }
+                if pushed {
+                    row.pad_m = felt.contact_force_n;
+                }
             }
             felt = &tip_rows[..n];
         }

@@ -81,7 +81,7 @@ pub(crate) struct Trials {
 /// The first channel of each kind of output among those of an engine.
 pub(crate) fn kinds(channels: &[ActuatorSettings]) -> Vec<usize> {
     let first = |kind| channels.iter().position(|channel| channel.output == kind);
-    let kinds = [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential];
+    let kinds = [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential, Quantity::Force];
     kinds.into_iter().filter_map(first).collect()
 }
 

@@ -33,6 +33,7 @@ use crate::model::material::Material;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikeField;
 use crate::model::surface::Surface;
+use crate::resource::long_waves;
 use crate::resource::overlay::Overlay;
 use crate::resource::probe::PreparedProbe;
 use crate::resource::surface::{SurfaceLevels, SurfaceSlot};
@@ -291,7 +292,8 @@ impl Scene {
         };
         let (trajectory, place_trajectory) = (trajectory(period_m)?, trajectory([f64::INFINITY; 2])?);
         let relief = (surface.micro_relief_m, surface.outer_scale_m, surface.micro_relief_octaves_db);
-        let overlay = Overlay::new(period_m, properties.band.shortest_m, relief);
+        let waves_m = long_waves::under(&mut surface, &properties);
+        let overlay = Overlay::new(period_m, properties.band.shortest_m, relief, waves_m);
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.compliance_m_n > 0.0 || properties.tip_law.is_some();
         let place = Placement { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };

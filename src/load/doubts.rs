@@ -12,7 +12,7 @@ const MOST_FULL_SCALE_M: f64 = 1.0;
 pub(super) fn doubts(actuators: &[ActuatorSettings], full_scale: impl Iterator<Item = f64>) -> Vec<String> {
     let mut told = Vec::new();
     for (channel, (settings, full_scale)) in actuators.iter().zip(full_scale).enumerate() {
-        if settings.output != Quantity::Acceleration {
+        if matches!(settings.output, Quantity::Displacement | Quantity::Tangential) {
             told.extend(long(&format!("actuator {channel}: full_scale"), full_scale, MOST_FULL_SCALE_M));
         }
         // The limits of the device that is equalised are told once.

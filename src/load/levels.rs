@@ -48,6 +48,8 @@ use asperity_dsp::limits::output as limits;
 pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
 pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
+/// Contact force at full scale where nothing says better, N.
+pub const FALLBACK_FULL_SCALE_N: f64 = 10.0;
 
 impl Levels {
     /// Levels of the scene; NaN where it has none.
@@ -95,6 +97,7 @@ pub(super) fn resolve(
             _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
             Quantity::Displacement | Quantity::Tangential => FALLBACK_FULL_SCALE_M,
             Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
+            Quantity::Force => FALLBACK_FULL_SCALE_N,
         };
     }
     let shared: Vec<usize> =
@@ -300,7 +303,7 @@ fn peak(samples: &[f32], ends_s: [f64; 2], sample_rate_hz: f64) -> f64 {
 /// The first actuator of each kind of output.
 fn kinds(file: &SceneFile) -> Vec<usize> {
     let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
-    [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential]
+    [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential, Quantity::Force]
         .into_iter()
         .filter_map(first)
         .collect()

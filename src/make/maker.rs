@@ -109,6 +109,9 @@ impl<'a> Loader<'a> {
         if let Some(gains_db) = entry.micro_relief_octaves_db {
             surface = surface.micro_relief_octaves_db(gains_db);
         }
+        if let Some(long_waves) = entry.long_waves {
+            surface = surface.long_waves(long_waves);
+        }
         if let Some(frame) = entry.frame {
             surface = surface.frame(frame);
         }

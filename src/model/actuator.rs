@@ -31,10 +31,10 @@ pub const FELT_FORCE_EXPONENT: f64 = 1.0 / 3.0;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
-    /// Quantity of the channel: the pad's displacement (the paper), its acceleration, or how
-    /// friction drags the skin sideways.
+    /// Quantity of the channel: the pad's displacement (the paper), its acceleration, how friction
+    /// drags the skin sideways, or the normal contact force.
     pub output: Quantity,
-    /// m (or m/s²) at sample value 1.0; 1.0 gives SI units.
+    /// m (or m/s², or N) at sample value 1.0; 1.0 gives SI units.
     pub full_scale: f64,
     /// n of a finger's displacement ∝ (F / 1 N)ⁿ, 0 to 1; 0 is the pad's own motion (the paper), ⅓
     /// [`FELT_FORCE_EXPONENT`].

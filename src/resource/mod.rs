@@ -10,6 +10,7 @@ pub(crate) mod bursts;
 pub(crate) mod diffuse;
 pub(crate) mod holding;
 pub(crate) mod impulse_ring;
+pub(crate) mod long_waves;
 pub(crate) mod overlay;
 pub(crate) mod probe;
 pub(crate) mod rolled_over;

@@ -10,6 +10,8 @@
 //! ```text
 //! n(x) = n_below(x) + c (n_all(x) − n_below(x))      c: 1 where the source has no relief, 0 from 2 rms on
 //! ```
+//! Where a map has relief but no long waves, n_below holds [those](super::long_waves) as well.
+//!
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning,
 //! at constant power: sine and cosine, because the two are unrelated.
 //!
@@ -36,6 +38,8 @@ pub(crate) struct Overlay {
     ordinary_m: f64,
     outer_scale_m: f64,
     gains_db: [f64; OCTAVES],
+    /// Rms of the long waves under the source, m.
+    waves_m: [f64; OCTAVES],
     /// For tips that have ridden here, and which rides now.
     tips: [Tip; TIPS],
     now: usize,
@@ -149,13 +153,24 @@ impl Overlay {
         period_m: [f64; 2],
         longest_m: f64,
         (rms_m, outer_scale_m, gains_db): (f64, f64, [f64; OCTAVES]),
+        waves_m: [f64; OCTAVES],
     ) -> Self {
         let axes = period_m.map(|length_m| TileAxis::new(length_m, LONGEST_CELL_M));
         let nobody = OctaveWeights::pinned(0.0, f64::INFINITY);
         let tips = [Tip { radius_m: f64::NAN, below: nobody, all: nobody }; TIPS];
         let ordinary_m = rms_m * growth(ORDINARY);
-        let mut overlay =
-            Self { axes, longest_m, rms_m, ordinary_m, outer_scale_m, gains_db, tips, now: 0, next: 0 };
+        let mut overlay = Self {
+            axes,
+            longest_m,
+            rms_m,
+            ordinary_m,
+            outer_scale_m,
+            gains_db,
+            waves_m,
+            tips,
+            now: 0,
+            next: 0,
+        };
         overlay.tune(0.0);
         overlay
     }
@@ -178,7 +193,13 @@ impl Overlay {
             })
             .with_gains_db(&self.gains_db)
         };
-        self.tips[self.next] = Tip { radius_m, below: weights(self.longest_m), all: weights(f64::INFINITY) };
+        let below = weights(self.longest_m);
+        let below = if self.waves_m == [0.0; OCTAVES] {
+            below
+        } else {
+            below.with(&OctaveWeights::constant(&self.waves_m))
+        };
+        self.tips[self.next] = Tip { radius_m, below, all: weights(f64::INFINITY) };
         self.now = self.next;
         self.next = (self.next + 1) % TIPS;
     }

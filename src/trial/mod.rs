@@ -134,8 +134,9 @@ fn content(surface: &mut Surface) -> Result<DefaultHasher, AddError> {
     }
     let Surface { wraps, strike_position, micro_relief_m, outer_scale_m, friction, .. } = *surface;
     let finish = (size_m, wraps, strike_position, micro_relief_m, outer_scale_m, friction);
-    let Surface { compliance_m_n, excitation, stick_slip, frame, micro_relief_octaves_db, .. } = *surface;
-    let rest = (compliance_m_n, excitation, stick_slip, frame, micro_relief_octaves_db);
+    let Surface { compliance_m_n, excitation, stick_slip, frame, .. } = *surface;
+    let Surface { micro_relief_octaves_db, long_waves, .. } = *surface;
+    let rest = (compliance_m_n, excitation, stick_slip, frame, micro_relief_octaves_db, long_waves);
     let source = (properties.band, properties.reach_m, properties.extension);
     format!("{finish:?} {rest:?} {source:?}").hash(&mut hasher);
     Ok(hasher)

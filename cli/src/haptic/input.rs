@@ -115,8 +115,13 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
         let right = format!("must be below {}, the number of [[actuator]] tables", file.actuators.len());
         return Err(CliError::new("--channel", format!("{channel} is not in {}", path.display()), right));
     };
-    if actuator.settings.output == Quantity::Acceleration {
-        let what = format!("actuator {channel} gives acceleration");
+    let given = match actuator.settings.output {
+        Quantity::Displacement | Quantity::Tangential => None,
+        Quantity::Acceleration => Some("acceleration"),
+        Quantity::Force => Some("force"),
+    };
+    if let Some(given) = given {
+        let what = format!("actuator {channel} gives {given}");
         return Err(CliError::file(path, what, "write output = \"displacement\" to make a clip of it"));
     }
     let (log, unread) = load_log(&file)?;

@@ -233,8 +233,8 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         outputs.write(&with_suffix(stem, "svg"), svg.as_bytes())?;
     }
     if let Some(path) = &options.port {
-        let acceleration = file.actuators.first().is_none_or(|a| a.settings.output == Quantity::Acceleration);
-        if acceleration {
+        let of = file.actuators.first().map(|actuator| actuator.settings.output);
+        if !matches!(of, Some(Quantity::Displacement | Quantity::Tangential)) {
             let right = "write output = \"displacement\" for the first actuator";
             return Err(CliError::new("--port", "a clip is made of displacement", right));
         }

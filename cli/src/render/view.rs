@@ -28,6 +28,7 @@ pub fn draw(
                 Quantity::Displacement => ("displacement", "m"),
                 Quantity::Acceleration => ("acceleration", "m/s²"),
                 Quantity::Tangential => ("tangential displacement", "m"),
+                Quantity::Force => ("contact force", "N"),
             };
             let full_scale = actuator.full_scale.unwrap_or(1.0);
             HapticChannel { quantity, unit, full_scale, felt_force_exponent, samples }

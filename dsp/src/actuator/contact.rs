@@ -16,6 +16,8 @@ pub enum Quantity {
     /// Drag of the skin by friction along the motion, m ([`crate::tangential`]): the place of the
     /// skin is handed in as the pad's.
     Tangential,
+    /// Normal contact force, N: handed in as the pad's place.
+    Force,
 }
 
 /// Time in which a contact that has ended fades, s (chosen: shorter than two 60 Hz events, and a
@@ -106,7 +108,7 @@ impl ContactOutputState {
     #[must_use]
     pub fn begin(design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> Self {
         let settled = match design.quantity {
-            Quantity::Displacement | Quantity::Tangential => pad_m,
+            Quantity::Displacement | Quantity::Tangential | Quantity::Force => pad_m,
             Quantity::Acceleration => 0.0,
         };
         Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s }
@@ -147,7 +149,7 @@ impl ContactOutputState {
     pub fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let before_m_s = core::mem::replace(&mut self.velocity_m_s, pad_velocity_m_s);
         match design.quantity {
-            Quantity::Displacement | Quantity::Tangential => pad_m,
+            Quantity::Displacement | Quantity::Tangential | Quantity::Force => pad_m,
             Quantity::Acceleration => (pad_velocity_m_s - before_m_s) * design.sample_rate_hz,
         }
     }

@@ -165,7 +165,7 @@ impl DeviceState {
         self.velocity = velocity;
         match model.quantity {
             Quantity::Displacement | Quantity::Tangential => self.z[1],
-            Quantity::Acceleration => acceleration,
+            Quantity::Acceleration | Quantity::Force => acceleration,
         }
     }
 

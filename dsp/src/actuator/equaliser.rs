@@ -55,7 +55,7 @@ impl Equaliser {
         let high = (profile.band_hz[1] * EDGE).min(HIGHEST_CORNER * sample_rate_hz);
         let (inverse_hz, edge_hz) = match quantity {
             Quantity::Displacement | Quantity::Tangential => (high, low),
-            Quantity::Acceleration => (low, high),
+            Quantity::Acceleration | Quantity::Force => (low, high),
         };
         let inverse = Butterworth::new(inverse_hz, sample_rate_hz)?;
         let edge = Butterworth::new(edge_hz, sample_rate_hz)?;
@@ -74,7 +74,7 @@ impl Equaliser {
         out.mix = mix.map(|g| g / at_resonance);
         out.group_delay_s = match quantity {
             Quantity::Displacement | Quantity::Tangential => inverse.group_delay_s(),
-            Quantity::Acceleration => edge.group_delay_s(),
+            Quantity::Acceleration | Quantity::Force => edge.group_delay_s(),
         };
         Ok(out)
     }

@@ -150,11 +150,16 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         }
         let mut sums = [v.splat(0.0); W];
         let (mut coarsest, mut end) = ([OCTAVES; W], OCTAVES);
+        let mut present = 0;
         for (coarsest, set) in coarsest.iter_mut().zip(sets) {
             *coarsest = set.coarsest;
             end = end.min(set.coarsest);
+            present |= set.present;
         }
         for i in (end..alive).rev() {
+            if present >> i & 1 == 0 {
+                continue;
+            }
             let octave = &noise.octaves[i];
             let lattice = &lattices[octave.rotation as usize];
             let value = self.octave(octave, lattice, i < self.slow, &mut last[i]);

@@ -64,6 +64,8 @@ pub struct OctaveWeights {
     pub(super) of: [[f32; TERMS]; OCTAVES],
     /// The first octave that is there at all; [`OCTAVES`] for none.
     pub(super) coarsest: usize,
+    /// A bit for each octave that is there.
+    pub(super) present: u32,
 }
 
 impl OctaveWeights {
@@ -97,9 +99,34 @@ impl OctaveWeights {
         Self::of(of)
     }
 
+    /// Weights that give each octave this rms, m, whatever the roughness; coarsest first.
+    #[must_use]
+    pub fn constant(rms_m: &[f64; OCTAVES]) -> Self {
+        let mut of = [[0.0; TERMS]; OCTAVES];
+        for ((of, rms_m), cell_m) in of.iter_mut().zip(rms_m).zip(CELLS_M) {
+            let bare = |roughness| {
+                let rising = 0.5 * (FractalNoise::alpha(roughness) - 1.0);
+                libm::pow(PEAK_WAVELENGTH_CELLS * cell_m / PINNED_M, rising)
+            };
+            *of = polynomial([0.0, 0.25, 0.5, 0.75, 1.0].map(|r| rms_m / bare(r))).map(|c| c as f32);
+        }
+        Self::of(of)
+    }
+
+    /// Weights with those of other octaves beside them.
+    #[must_use]
+    pub fn with(&self, others: &Self) -> Self {
+        let mut of = self.of;
+        for (weight, other) in of.iter_mut().zip(&others.of) {
+            weight.iter_mut().zip(other).for_each(|(term, other)| *term += other);
+        }
+        Self::of(of)
+    }
+
     fn of(of: [[f32; TERMS]; OCTAVES]) -> Self {
         let coarsest = of.iter().position(|weight| *weight != [0.0; TERMS]).unwrap_or(OCTAVES);
-        Self { of, coarsest }
+        let present = of.iter().rev().fold(0, |bits, weight| bits << 1 | u32::from(*weight != [0.0; TERMS]));
+        Self { of, coarsest, present }
     }
 }
 
@@ -116,7 +143,7 @@ impl OctaveWeights {
     /// Weights of the octaves from one on, by their index.
     #[must_use]
     pub fn from_octave(&self, octave: usize) -> Self {
-        Self { of: self.of, coarsest: self.coarsest.max(octave.min(OCTAVES)) }
+        Self { coarsest: self.coarsest.max(octave.min(OCTAVES)), ..*self }
     }
 
     /// Rms of the relief that lies beside the Catmull-Rom cubics through its samples, and which
@@ -270,6 +297,24 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn octaves_of_a_given_rms_have_it_at_every_roughness_and_leave_the_others_out() {
+        let mut rms_m = [0.0; OCTAVES];
+        (rms_m[0], rms_m[3]) = (3e-5, 8e-6);
+        let weights = OctaveWeights::constant(&rms_m);
+        assert_eq!((weights.coarsest, weights.present), (0, 0b1001));
+        for (i, (rms_m, c)) in rms_m.into_iter().zip(weights.of).enumerate() {
+            for n in 0..=40 {
+                let r = f64::from(n) / 40.0;
+                let law = libm::pow(1.92 * CELLS_M[i] / 1e-3, 0.5 * (FractalNoise::alpha(r) - 1.0));
+                let sum = law * c.iter().rev().fold(0.0, |sum, c| f64::from(*c) + r * sum);
+                assert!((sum - rms_m).abs() <= 0.02 * rms_m, "octave {i}, R {r}: {sum} for {rms_m}");
+            }
+        }
+        let both = OctaveWeights::new(&Relief { longest_wavelength_m: 1e-4, ..MATTE }).with(&weights);
+        assert!(both.present & 0b1001 == 0b1001 && both.present & 0b110 == 0, "{:b}", both.present);
     }
 
     // dB that a sphere takes off the octaves about 8 mm … 62.5 µm: a dilation in numpy,

@@ -100,7 +100,12 @@ pub struct ForceUnits {
 
 /// Unit of a quantity.
 fn unit_of(output: &str) -> String {
-    if output == "acceleration" { "m/s^2" } else { "m" }.to_owned()
+    match output {
+        "acceleration" => "m/s^2",
+        "force" => "N",
+        _ => "m",
+    }
+    .to_owned()
 }
 
 /// Units and rates.

@@ -136,7 +136,7 @@ pub struct Force {
 pub struct Haptic {
     /// Samples a second, Hz.
     pub rate_hz: f64,
-    /// `displacement` (m), `acceleration` (m/s²) or `tangential` (m).
+    /// `displacement` (m), `acceleration` (m/s²), `tangential` (m) or `force` (N).
     pub output: String,
     /// Meaning of sample value 1; missing: by the level policy of the first surface, for all.
     pub full_scale: Option<f64>,
@@ -370,7 +370,7 @@ impl Spec {
         if output.haptic.is_empty() {
             return Err(FileError::new("output.haptic", "is empty", "name a quantity, or leave it out"));
         }
-        let known = ["displacement", "acceleration", "tangential"];
+        let known = ["displacement", "acceleration", "tangential", "force"];
         for (place, haptic) in output.haptic.iter().enumerate() {
             let fastest = [100.0, output.audio.rate_hz];
             let right = "must be 100 Hz to the rate of the audio";

@@ -168,6 +168,7 @@ fn quantity(name: &str) -> Quantity {
     match name {
         "acceleration" => Quantity::Acceleration,
         "tangential" => Quantity::Tangential,
+        "force" => Quantity::Force,
         _ => Quantity::Displacement,
     }
 }

@@ -96,7 +96,7 @@ impl HapticChannel {
 
     /// True where means of inner samples leave, and not some of them.
     fn averages(&self, inner: InnerRate) -> bool {
-        inner.every > 1 && self.output.quantity() == Quantity::Acceleration
+        inner.every > 1 && matches!(self.output.quantity(), Quantity::Acceleration | Quantity::Force)
     }
 
     /// The samples of a stretch as long as `out`.

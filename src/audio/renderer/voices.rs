@@ -137,8 +137,8 @@ impl Renderer {
         let channels = &mut self.channels;
         self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
             let (sum, design) = channels[channel].begun(n);
-            for (sum, [pad_m, pad_m_s]) in sum.iter_mut().zip(moves) {
-                *sum += output.tick(design, *pad_m, *pad_m_s);
+            for (sum, blow) in sum.iter_mut().zip(moves) {
+                *sum += blow.felt(design, output);
             }
         });
     }

@@ -11,6 +11,8 @@ const ROUNDING: f64 = 1e-13;
 const ROUNDING_N: f64 = 1e-11;
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
+/// Contact force that counts as none, N: −120 dB of what a finger presses with.
+const STILL_N: f64 = 1e-6;
 /// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
 pub(super) const STILL_M_S2: f64 = 1e-6;
 
@@ -28,7 +30,7 @@ impl AcCoupling {
         Self { feel, force: State::default(), last_felt: 0.0 }
     }
 
-    /// Displacement or acceleration of the pad about the mean surface, which the actuator is to
+    /// Displacement or acceleration of the pad about the mean surface, or its force, which the actuator is to
     /// reproduce, and the alternating contact force as impulses, N·s; `step_s` is the time of a
     /// sample, 0 for a force that is not to sound.
     pub(super) fn run(
@@ -74,10 +76,11 @@ impl AcCoupling {
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
-    /// Tests whether nothing of a pad at `pad_m` is felt to move. Without a high-pass a resting pad
-    /// is felt as its constant displacement.
-    pub(super) fn feels_still(&self, output: &ContactOutput, pad_m: f64) -> bool {
-        self.last_felt.abs() < still(output) || (self.last_felt - pad_m).abs() < still(output)
+    /// Tests whether nothing of a pad at this row is felt to move. Without a high-pass a resting pad
+    /// is felt as its constant displacement, or force.
+    pub(super) fn feels_still(&self, output: &ContactOutput, row: &PadSample) -> bool {
+        let resting = if output.quantity() == Quantity::Force { row.contact_force_n } else { row.pad_m };
+        self.last_felt.abs() < still(output) || (self.last_felt - resting).abs() < still(output)
     }
 
     /// Drops what is left of a contact that has come to rest.
@@ -92,5 +95,6 @@ fn still(output: &ContactOutput) -> f64 {
     match output.quantity() {
         Quantity::Displacement | Quantity::Tangential => STILL_M,
         Quantity::Acceleration => STILL_M_S2,
+        Quantity::Force => STILL_N,
     }
 }

@@ -9,7 +9,7 @@ use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
 use crate::resource::surface::SurfaceSlot;
 use crate::resource::tip_force::TipForce;
-use asperity_dsp::actuator::ContactOutputState;
+use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::trajectory::Trajectory;
 use asperity_surface::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, TouchKind};
@@ -76,7 +76,8 @@ impl Voice {
             if probe.tip.is_some() {
                 self.tip.land(scratch.profile.heard.height_m[0], force_n, sample.closing_m_s, later);
             }
-            self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
+            let begins = if at.output.quantity() == Quantity::Force { 0.0 } else { height_m };
+            self.ac.feel = ContactOutputState::begin(at.output, begins, -sample.closing_m_s);
         } else {
             self.preroll(at, seat, scratch);
         }
@@ -127,6 +128,10 @@ impl Voice {
             }
         }
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;
+        if output.quantity() == Quantity::Force {
+            self.ac.feel = ContactOutputState::begin(output, row.contact_force_n, 0.0);
+            return;
+        }
         self.ac.feel =
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }

@@ -116,7 +116,7 @@ impl Voice {
         if self.asleep {
             return;
         }
-        self.asleep = self.ac.feels_still(output, row.pad_m)
+        self.asleep = self.ac.feels_still(output, &row)
             && self.path.is_still()
             && self.skin.is_still()
             && self.pad.is_settled(&row)

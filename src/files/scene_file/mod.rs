@@ -243,6 +243,7 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
         ("displacement", Quantity::Displacement),
         ("acceleration", Quantity::Acceleration),
         ("tangential", Quantity::Tangential),
+        ("force", Quantity::Force),
     ];
     let default = ActuatorSettings::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);

@@ -40,6 +40,8 @@ pub struct SurfaceEntry {
     pub outer_scale_m: Option<f64>,
     /// Gains of the overlay's octaves over its law, coarsest first, dB.
     pub micro_relief_octaves_db: Option<[f64; OCTAVES]>,
+    /// Long waves under a map that has none of its own; none = the engine's default.
+    pub long_waves: Option<bool>,
     /// Continuation beyond the edge.
     pub wrap: Wrap,
     /// Excitation of the body by sliding.
@@ -89,6 +91,7 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
         micro_relief_octaves_db: fields.up_to(&parameters::MICRO_RELIEF_OCTAVES_DB, 0.0)?,
+        long_waves: fields.flag("long_waves")?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation,
         stick_slip: read_stick_slip(&mut fields, excitation)?,

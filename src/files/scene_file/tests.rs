@@ -189,7 +189,7 @@ fn numbers_out_of_range_are_named_with_what_would_be_right() {
         ("[[actuator]]\nfull_scale = 0.0", "actuator 1: full_scale: 0.0 is refused"),
         (
             "[[actuator]]\noutput = \"smell\"",
-            "\"smell\" is unknown; must be \"displacement\", \"acceleration\" or \"tangential\"",
+            "\"smell\" is unknown; must be \"displacement\", \"acceleration\", \"tangential\" or \"force\"",
         ),
         ("[[body]]\nname = \"b\"\nmaterial = 3", "body 1 \"b\": material: 3 is not a material"),
         (
