@@ -117,7 +117,7 @@ pub use model::click::Click;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};
-pub use model::error::{AddError, ConfigError, Refusal, ReportError};
+pub use model::error::{AddError, ConfigError, PickupProblem, Refusal, ReportError};
 pub use model::event::{
     ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
     Touching,
@@ -129,6 +129,7 @@ pub use model::level_policy::LevelPolicy;
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
+pub use model::pickup::{Pickup, PickupQuantity, RigidMotion};
 pub use model::preset::Preset;
 pub use model::probe::{PROBE_PRESETS, THING_PROBE, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
@@ -151,6 +152,7 @@ pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{HeardTip, Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;
 pub use asperity_dsp::mode::Mode;
+pub use asperity_dsp::sensor::SensorProfile;
 pub use asperity_dsp::simd::Isa;
 pub use asperity_dsp::stick_slip::Friction;
 pub use asperity_dsp::trajectory::PathMode;

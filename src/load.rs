@@ -6,7 +6,8 @@ pub mod levels;
 mod parts;
 
 use crate::engine::Engine;
-use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
+use crate::files::scene_file::{AudioEntry, MakeSource, PickupEntry, SceneFile, SurfaceEntry};
+use crate::files::sensor_profile::SensorPreset;
 use crate::files::{Disk, FileError, Files};
 pub use crate::make::edit::{Edits, MakeSurface};
 use crate::make::maker::{self, Loader};
@@ -17,6 +18,7 @@ use crate::model::config::Config;
 use crate::model::preset::Preset;
 use crate::resource::probe::remark;
 use asperity_dsp::micro_contact::{Integrator, MicroContact};
+use asperity_dsp::sensor::SensorProfile;
 use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
 use asperity_surface::raster::Raster;
@@ -221,6 +223,8 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
     let actuators = file.actuators.iter().zip(&levels.full_scale);
     let actuators =
         actuators.map(|(entry, full_scale)| maker::actuator(overrides.files, entry, *full_scale, &file.path));
+    let folder = file.path.parent().unwrap_or(Path::new(""));
+    let pickups = file.pickups.iter().map(|entry| sensor(overrides.files, entry, folder));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
@@ -239,12 +243,22 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
             .zip(&levels.gain)
             .map(|(bus, gain)| bus_of(bus, *gain, file, overrides))
             .collect(),
+        pickups: pickups.collect::<Result<_, _>>()?,
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
         // A scene is loaded whole before the first block is rendered.
         queue_capacity: default.queue_capacity.max(2 * (file.surfaces.len() + file.bodies.len())),
         ..default
     })
+}
+
+/// The sensor of a pickup, where it names one.
+fn sensor(files: &dyn Files, entry: &PickupEntry, folder: &Path) -> Result<Option<SensorProfile>, FileError> {
+    let Some(name) = &entry.sensor else { return Ok(None) };
+    let preset = SensorPreset::find(files, name, folder);
+    preset
+        .map(|preset| Some(preset.profile))
+        .map_err(|error| error.within(format!("pickup \"{}\"", entry.name)))
 }
 
 /// A bus without a word about a limiter has one where something is known to clip or nobody knows:

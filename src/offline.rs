@@ -46,6 +46,8 @@ pub struct Render {
     pub audio: Vec<Vec<f32>>,
     /// One channel an actuator, in order.
     pub haptic: Vec<Vec<f32>>,
+    /// One channel of [pickups](crate::Config::pickups), in order: SI units, or volts of its sensor.
+    pub pickup: Vec<Vec<f32>>,
     /// Statistics.
     pub stats: Stats,
     /// The first event that was refused, and its game time, s.
@@ -176,6 +178,7 @@ struct Take {
     end: u64,
     audio: Vec<Vec<f32>>,
     haptic: Vec<Vec<f32>>,
+    pickup: Vec<Vec<f32>>,
     processing: Duration,
     first_refused: Option<(f64, ReportError)>,
 }
@@ -192,6 +195,7 @@ impl Take {
             end: total as u64,
             audio: vec![vec![0.0; total]; renderer.audio_buses()],
             haptic,
+            pickup: vec![vec![0.0; total]; renderer.pickup_channels()],
             processing: Duration::ZERO,
             first_refused: None,
             renderer,
@@ -228,8 +232,9 @@ impl Take {
         let range = at..at + frames;
         let mut haptic: Vec<_> = self.haptic.iter_mut().map(|channel| &mut channel[range.clone()]).collect();
         let mut audio: Vec<_> = self.audio.iter_mut().map(|bus| &mut bus[range.clone()]).collect();
+        let mut pickup: Vec<_> = self.pickup.iter_mut().map(|channel| &mut channel[range.clone()]).collect();
         let began_s = self.clock_s.map(|clock_s| clock_s());
-        self.renderer.render_tapped(&mut haptic, &mut audio, tap);
+        self.renderer.render_all(&mut haptic, &mut audio, &mut pickup, tap);
         if let (Some(began_s), Some(clock_s)) = (began_s, self.clock_s) {
             self.processing += Duration::from_secs_f64((clock_s() - began_s).max(0.0));
         }
@@ -237,7 +242,7 @@ impl Take {
 
     fn finish(mut self) -> Render {
         let latency = self.renderer.latency_samples();
-        for channel in self.haptic.iter_mut().chain(&mut self.audio) {
+        for channel in self.haptic.iter_mut().chain(&mut self.audio).chain(&mut self.pickup) {
             channel.drain(..latency);
         }
         let sand = self.renderer.finish().into_iter().filter_map(|(surface, result)| {
@@ -248,6 +253,7 @@ impl Take {
             sample_rate_hz: self.renderer.sample_rate_hz(),
             audio: self.audio,
             haptic: self.haptic,
+            pickup: self.pickup,
             stats: self.scene.stats(),
             first_refused: self.first_refused,
             why_silent: self.scene.why_silent(),

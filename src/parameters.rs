@@ -178,6 +178,13 @@ parameters! {
         V_AXIS: "v_axis", "", limits::AXIS, "Where v grows to, at a right angle to u; missing: the body's y",
             vector(3), changes(Anew);
     }
+    /// A pickup.
+    mod pickup = "pickup" {
+        AT_M: "at_m", "m", limits::PLACE_M, "Place on a body with shapes, each coordinate in the body's frame", vector(3), changes(Anew);
+        DIRECTION: "direction", "", limits::AXIS, "What it reads along; only its direction counts; missing: the outward normal", vector(3), changes(Anew);
+        FACTOR: "factor", "", limits::PICKUP_FACTOR,
+            "On a body without shapes: how much it moves with every mode, 1 as where that swings most", changes(Anew);
+    }
     /// Probe.
     mod probe = "probe" {
         PAD_MASS_KG: "pad_mass_kg", "kg", limits::probe::PAD_MASS_KG, "Mass of the skin that moves with the surface",
@@ -325,5 +332,11 @@ parameters! {
         RESTITUTION: "restitution", "", limits::impact::RESTITUTION, "Rebound over approach speed", or(1.0), changes(Event);
         GAIN: "gain", "", limits::impact::GAIN, "Factor of what is felt and heard", or(1.0), changes(Event);
         IMPORTANCE: "importance", "", limits::impact::IMPORTANCE, "Factor of a contact's priority", or(1.0), changes(Event);
+        ACCELERATION_M_S2: "acceleration_m_s2", "m/s²", limits::RIGID_ACCELERATION_M_S2,
+            "Acceleration of a body's centre, in its own axes", vector(3), changes(Event);
+        GRAVITY_M_S2: "gravity_m_s2", "m/s²", limits::RIGID_ACCELERATION_M_S2, "Gravity, in the same axes", vector(3), changes(Event);
+        ANGULAR_VELOCITY_RAD_S: "angular_velocity_rad_s", "rad/s", limits::RIGID_TURN_RAD_S,
+            "Angular velocity, in the same axes", vector(3), changes(Event);
+        CENTRE_M: "centre_m", "m", limits::PLACE_M, "Centre that the acceleration belongs to, in the body's frame", vector(3), changes(Event);
     }
 }

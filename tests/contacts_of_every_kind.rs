@@ -49,7 +49,7 @@ fn report(scene: &mut Scene, touching: Touching, contact: u64) {
         let event = match line.event {
             LogEvent::Begin { sample, .. } => ContactEvent::begin_with(ContactId(contact), touching, sample),
             LogEvent::Move { sample, .. } => ContactEvent::moved(ContactId(contact), sample),
-            LogEvent::End { .. } | LogEvent::Impact { .. } | LogEvent::Edit(_) => {
+            LogEvent::End { .. } | LogEvent::Impact { .. } | LogEvent::Motion { .. } | LogEvent::Edit(_) => {
                 ContactEvent::end(ContactId(contact))
             }
         };

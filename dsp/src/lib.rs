@@ -56,6 +56,7 @@ pub mod radiation;
 pub mod rng;
 pub mod rolling;
 pub mod sensation;
+pub mod sensor;
 pub mod simd;
 pub mod stick_slip;
 pub mod tangential;

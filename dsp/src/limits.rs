@@ -87,6 +87,12 @@ pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
 pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
 /// Depth of a tip below a surface; below 0 above it.
 pub const TIP_DEPTH_M: Range = Range::new(-1e3, 1.0, "-1000 to 1 m");
+/// Share of a pickup in the motion of every mode of a body without shapes.
+pub const PICKUP_FACTOR: Range = Range::new(-1.0, 1.0, "-1 to 1");
+/// Each component of the acceleration of a body as a whole.
+pub const RIGID_ACCELERATION_M_S2: Range = Range::new(-1e6, 1e6, "finite and within ±1e6 m/s²");
+/// Each component of the angular velocity of a body.
+pub const RIGID_TURN_RAD_S: Range = Range::new(-1e4, 1e4, "finite and within ±1e4 rad/s");
 /// Length of a direction, of which only the direction counts.
 pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
@@ -134,6 +140,26 @@ pub mod probe {
     pub const ASPERITIES: Range = Range::new(1.0, 1e6, "1 to 1e6");
     /// n of k_m ∝ Fⁿ.
     pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
+}
+
+/// Sensor of a pickup.
+pub mod sensor {
+    use super::Range;
+
+    /// f₀ of what the sensor is mounted with.
+    pub const RESONANCE_HZ: Range = Range::new(1.0, 1e6, "1 to 1e6 Hz");
+    /// Q of that resonance.
+    pub const QUALITY: Range = Range::new(0.1, 1e4, "0.1 to 1e4");
+    /// Lower end of the band; 0 is none.
+    pub const BAND_HZ: Range = Range::new(0.0, 1e6, "0 to 1e6 Hz, the lower end first");
+    /// Noise density.
+    pub const NOISE_M_S2_RTHZ: Range = Range::new(0.0, 100.0, "0 to 100 m/s²/√Hz");
+    /// Reading at which it clips.
+    pub const CLIP_M_S2: Range = Range::new(1e-6, 1e9, "1e-6 to 1e9 m/s²");
+    /// Gain.
+    pub const GAIN_V_PER_M_S2: Range = Range::new(1e-9, 1e9, "1e-9 to 1e9 V/(m/s²)");
+    /// Bits of the converter; 0 is none.
+    pub const ADC_BITS: Range = Range::new(0.0, 32.0, "0 to 32 bits, 0 = none");
 }
 
 /// Striker.

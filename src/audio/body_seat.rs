@@ -10,6 +10,7 @@ use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::ContactKey;
 use crate::resource::body::{BodySlot, RenderArgs};
 use crate::resource::body_rub::FrictionInput;
+use crate::resource::pickup::Pickups;
 use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
@@ -300,6 +301,11 @@ impl BodySeat {
     /// The body is here again.
     pub(crate) fn take_back(&mut self, body: Option<Box<BodySlot>>) {
         self.current = body;
+    }
+
+    /// Its pickups.
+    pub(crate) fn pickups(&mut self) -> Option<&mut Pickups> {
+        self.current.as_mut()?.pickups()
     }
 
     fn look(&mut self, position: u64) {

@@ -91,6 +91,15 @@ impl Outlets {
         }
     }
 
+    /// Shows a channel of pickups.
+    pub(crate) fn pickup(&mut self, channel: usize, inner: InnerRate, position: u64, block: &[f32]) {
+        if self.are_open() {
+            self.show(inner, position, block, |outlet, first, leaving| {
+                outlet.pickup(channel, first, leaving)
+            });
+        }
+    }
+
     /// Tests whether any port is open.
     pub(crate) fn are_open(&self) -> bool {
         !self.open.is_empty()

@@ -10,6 +10,7 @@ mod hand_over;
 mod messages;
 mod meter;
 mod outputs;
+mod pickups;
 mod render_pool;
 mod tails;
 mod voices;
@@ -40,7 +41,8 @@ use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_surface::height_field::MAX_BLOCK;
 use contacts::SilentContact;
-use outputs::{Bus, HapticChannel, Mix};
+use outputs::{Bus, HapticChannel, Mix, clear_beyond};
+use pickups::PickupChannel;
 use render_pool::RenderPool;
 use std::any::Any;
 use std::sync::Arc;
@@ -71,6 +73,7 @@ pub struct Renderer {
     bodies_used: IndexSet,
     channels: Vec<HapticChannel>,
     buses: Vec<Bus>,
+    pickups: Vec<PickupChannel>,
     blows: Blows,
     outlets: Outlets,
     kernel: Level,
@@ -140,6 +143,7 @@ impl Renderer {
                 .map(|settings| HapticChannel::new(settings, rate))
                 .collect::<Result<_, _>>()?,
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
+            pickups: PickupChannel::all(config)?,
             blows: Blows::new(rate),
             outlets: Outlets::new(config.max_ports, config.actuators.len()),
             kernel,
@@ -267,6 +271,18 @@ impl Renderer {
         self.render_tapped(haptic, audio, &mut NoTap);
     }
 
+    /// [`render`](Self::render), and what the [pickups](crate::Pickup) read: channel i of
+    /// [`Config::pickups`](field@crate::Config::pickups) into slice i. They lag as the audio does
+    /// ([`audio_latency_samples`](Self::audio_latency_samples)).
+    pub fn render_with_pickups(
+        &mut self,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+        pickups: &mut [&mut [f32]],
+    ) {
+        self.render_all(haptic, audio, pickups, &mut NoTap);
+    }
+
     /// [`render`](Self::render), with a view into every contact.
     pub fn render_tapped<T: Tap>(
         &mut self,
@@ -274,9 +290,20 @@ impl Renderer {
         audio: &mut [&mut [f32]],
         tap: &mut T,
     ) {
-        let frames = shortest(haptic).min(shortest(audio));
+        self.render_all(haptic, audio, &mut [], tap);
+    }
+
+    pub(crate) fn render_all<T: Tap>(
+        &mut self,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+        pickups: &mut [&mut [f32]],
+        tap: &mut T,
+    ) {
+        let frames = shortest(haptic).min(shortest(audio)).min(shortest(pickups));
         let frames = if frames == usize::MAX { 0 } else { frames };
         self.clear_what_nobody_writes(frames, haptic, audio);
+        clear_beyond(pickups, |index| if index < self.pickups.len() { frames } else { 0 });
         let frames = frames * self.shared.inner.every;
         let mut done = 0;
         while done < frames {
@@ -290,6 +317,7 @@ impl Renderer {
             self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);
+            self.render_pickups(done, n, pickups);
             done += n;
             self.position += n as u64;
             if self.position.is_multiple_of(MAX_BLOCK as u64) {

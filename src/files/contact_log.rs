@@ -13,6 +13,7 @@ use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
 use crate::model::event::Emphasis;
 use crate::model::material::Material;
+use crate::model::pickup::RigidMotion;
 pub use edit::{LogBody, LogEdit, LogSurface};
 pub use error::LogError;
 use keys::Unread;
@@ -96,6 +97,14 @@ pub enum LogEvent {
         /// The hand: who feels it and what it holds.
         #[serde(flatten)]
         hand: LogHand,
+    },
+    /// A body moves as a whole.
+    Motion {
+        /// Name of the body.
+        body: String,
+        /// Motion at this instant, in its own axes.
+        #[serde(flatten)]
+        motion: RigidMotion,
     },
     /// The scene was edited.
     #[serde(untagged)]
@@ -238,7 +247,9 @@ impl ContactLog {
         let hand = |event: &LogEvent| match event {
             LogEvent::Begin { touching, .. } => touching.hand.actuator,
             LogEvent::Impact { hand, .. } => hand.actuator,
-            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
+            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Motion { .. } | LogEvent::Edit(_) => {
+                None
+            }
         };
         let missing = |(index, line): (usize, &LogLine)| {
             let actuator = hand(&line.event).filter(|actuator| usize::from(*actuator) >= channels)?;

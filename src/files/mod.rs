@@ -8,6 +8,7 @@ pub mod modes_file;
 mod nearest;
 mod other_file;
 pub mod scene_file;
+pub mod sensor_profile;
 pub(crate) mod shapes_file;
 mod shapes_glb;
 pub(crate) mod shapes_sidecar;

@@ -104,7 +104,7 @@ impl Strongest {
                     *most = [most[0].max(sample.normal_force_n), most[1].max(speed_m_s(sample))];
                 }
             }
-            ContactEvent::End { .. } => {}
+            ContactEvent::End { .. } | ContactEvent::Motion { .. } => {}
         }
     }
 

@@ -138,6 +138,7 @@ impl Recording {
                 LogEvent::Move { contact: contact.0, sample, emphasis }
             }
             ContactEvent::End { contact } => LogEvent::End { contact: contact.0 },
+            ContactEvent::Motion { body, motion } => LogEvent::Motion { body: self.body(body), motion },
             ContactEvent::Impact(impact) => LogEvent::Impact {
                 body: self.body(impact.body),
                 other: impact.other.map(|other| self.body(other)),

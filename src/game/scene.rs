@@ -4,6 +4,7 @@
 
 mod bodies;
 mod levelled;
+mod pickups;
 mod ports;
 mod quiet;
 mod recorded;
@@ -96,6 +97,8 @@ pub struct Scene {
     motions: Motions,
     /// Surface of each contact, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
+    /// When each body was last told to move as a whole, s, and how fast it turned, rad/s.
+    moved: HashMap<BodyId, (f64, [f64; 3])>,
     /// The newest impact that sounded on each body that has a least time: when, in samples, and its
     /// impulse.
     sounded: HashMap<BodyId, (f64, f64)>,
@@ -182,6 +185,7 @@ impl Scene {
             counters,
             recording: None,
             touched: HashMap::new(),
+            moved: HashMap::new(),
             sounded: HashMap::new(),
             rested: Vec::new(),
         }
@@ -375,6 +379,7 @@ impl Scene {
         self.forget_what_waits();
         self.clock.reset(self.counters.position.load(Relaxed));
         self.last_time_s = f64::NEG_INFINITY;
+        self.moved.clear();
         Ok(())
     }
 

@@ -248,7 +248,7 @@ impl Reported {
             }
             ContactEvent::Moved { sample, .. } => self.touch(sample),
             ContactEvent::Impact(_) => self.impacts += 1,
-            ContactEvent::End { .. } => {}
+            ContactEvent::End { .. } | ContactEvent::Motion { .. } => {}
         }
     }
 

@@ -89,6 +89,7 @@ impl Slips {
                     self.pressed.note(sample, touch.is_light);
                 }
             }
+            ContactEvent::Motion { .. } => {}
             ContactEvent::End { contact } => {
                 self.contacts.remove(contact);
             }

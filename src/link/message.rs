@@ -4,6 +4,7 @@ use crate::link::outlet::Outlet;
 use crate::model::body::{Body, Sends};
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
+use crate::model::pickup::RigidMotion;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::body::BodySlot;
@@ -31,6 +32,9 @@ pub(crate) enum Message {
         felt: Option<Felt>,
         pulse: HertzPulse,
     },
+    /// A body moves as a whole, over so many samples from what was told before; how much faster it
+    /// turns, rad/s².
+    Motion { stamp: Stamp, epoch: u64, slot: usize, motion: RigidMotion, alpha: [f64; 3], over: u32 },
     /// A probe for a new place.
     AddProbe { index: usize, probe: Box<PreparedProbe> },
     /// Mark that what was sent before belongs to a game time that has ended.

@@ -20,6 +20,9 @@ pub trait Outlet: Send + Sync {
     /// Takes samples of an audio bus.
     fn bus(&mut self, _bus: usize, _first: u64, _samples: &[f32]) {}
 
+    /// Takes samples of a channel of pickups.
+    fn pickup(&mut self, _channel: usize, _first: u64, _samples: &[f32]) {}
+
     /// Tests whether contacts are to be shown; while any port watches, slopes are computed that are
     /// not needed otherwise.
     fn watches_contacts(&self) -> bool {
@@ -44,6 +47,8 @@ pub struct PortSetup<'a> {
     pub haptic_channels: usize,
     /// Number of audio buses.
     pub audio_buses: usize,
+    /// Number of channels of pickups.
+    pub pickup_channels: usize,
     /// Contacts that can sound at the same time.
     pub voices: usize,
     /// Picture of a surface that changes.

@@ -210,6 +210,8 @@ fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
         };
         file.audio.iter().map(bus).collect()
     };
+    let sensors =
+        |file: &SceneFile| -> Vec<_> { file.pickups.iter().map(|pickup| pickup.sensor.clone()).collect() };
     let known =
         |(name, probe): &(String, _)| after.probes.iter().any(|new| new.0 == *name && new.1 == *probe);
     let differs = [
@@ -218,6 +220,7 @@ fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
         ("contacts", before.contacts != after.contacts),
         ("probe", before.probe != after.probe || !before.probes.iter().all(known)),
         ("actuator", before.actuators != after.actuators),
+        ("pickup: number and sensors", sensors(before) != sensors(after)),
         (
             "audio: number, names, limits and pascals of buses, gains that are not written",
             buses(before) != buses(after),

@@ -60,7 +60,8 @@ impl<'a> Loader<'a> {
         let body = Body::new(model).material(material).bus(BusId(bus));
         let strike_gain = Some(entry.strike_gain.unwrap_or(strike_gain));
         let least_time_s = entry.least_time_s.unwrap_or(0.0);
-        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, least_time_s, ..body })
+        let (mass_kg, pickups) = (entry.mass_kg.or_else(stock_kg), entry.pickups.clone());
+        Ok(Body { mass_kg, strike_gain, least_time_s, pickups, ..body })
     }
 
     /// Settings that all sources of a surface share.

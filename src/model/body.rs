@@ -3,6 +3,7 @@
 use crate::model::bus::BusId;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
+use crate::model::pickup::Pickup;
 
 /// Buses that a body may sound on beside its own.
 pub(crate) const MAX_SENDS: usize = 4;
@@ -33,6 +34,7 @@ pub struct Body {
     pub(crate) mass_kg: Option<f64>,
     pub(crate) least_time_s: f64,
     pub(crate) sends: Sends,
+    pub(crate) pickups: Vec<Pickup>,
 }
 
 impl Body {
@@ -51,6 +53,7 @@ impl Body {
             mass_kg: None,
             least_time_s: 0.0,
             sends: Sends::default(),
+            pickups: Vec::new(),
         }
     }
 
@@ -77,6 +80,14 @@ impl Body {
     #[must_use]
     pub fn mass_kg(mut self, mass_kg: f64) -> Self {
         self.mass_kg = Some(mass_kg);
+        self
+    }
+
+    /// Listens to it at a place of its own as well; any number of times. A recording of the scene
+    /// does not hold it.
+    #[must_use]
+    pub fn pickup(mut self, pickup: Pickup) -> Self {
+        self.pickups.push(pickup);
         self
     }
 

@@ -10,6 +10,7 @@ use asperity_dsp::DesignError;
 use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, Probe};
 use asperity_dsp::modal_bank::Culling;
+use asperity_dsp::sensor::SensorProfile;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::PathMode;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,9 @@ pub struct Config {
     /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By
     /// default one with gain 1, without limiter.
     pub audio: Vec<AudioBus>,
+    /// Channels of [pickups](crate::Pickup), each read by a sensor, or in SI units; by default
+    /// none.
+    pub pickups: Vec<Option<SensorProfile>>,
     /// Origin of the levels of bodies and surfaces that are added; as their numbers say unless told
     /// otherwise, shared levels that are found with [`Config::live`].
     pub levels: LevelPolicy,
@@ -112,6 +116,7 @@ impl Default for Config {
             probe: Probe::default(),
             actuators: vec![ActuatorSettings::default()],
             audio: vec![AudioBus::default()],
+            pickups: Vec::new(),
             levels: LevelPolicy::default(),
             max_contacts: 64,
             max_probes: 64,
@@ -204,6 +209,8 @@ impl Config {
                 limits::PASCALS.check("audio.pascals_at_full_scale", pascals)?;
             }
         }
+        self.pickups.iter().flatten().try_for_each(SensorProfile::check)?;
+        DesignError::check("pickups", self.pickups.len() as f64, "at most 1024 channels", |n| n <= 1024.0)?;
         if let Some(culling) = self.culling {
             // Without end is allowed: nothing is too quiet.
             let level_db = culling.level_db.clamp(-1.0, 1e9);

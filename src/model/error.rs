@@ -88,6 +88,35 @@ pub enum Refusal {
     },
 }
 
+/// What is wrong with a pickup.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PickupProblem {
+    /// A number no pickup can have.
+    #[error(transparent)]
+    BadValue(#[from] BadValue),
+    /// There is no such channel.
+    #[error("channel: {0} is refused; must be below {1}, the number of pickups in the config")]
+    Channel(usize, usize),
+    /// The place is off the surface.
+    #[error(
+        "at_m: is {0} m off the surface; must be within 1 % of the body's size, {1} m here: the nearest place of it is {2:?}"
+    )]
+    OffSurface(f64, f64, [f64; 3]),
+    /// The body has shapes, and no place is told.
+    #[error("at_m: is missing; write a place of the surface, [x, y, z] in metres")]
+    NoPlace,
+    /// The body has shapes, which say how much a place moves.
+    #[error("factor: stands on a body with shapes; write at_m instead")]
+    FactorBesideShapes,
+    /// The body has no shapes, so that a place says nothing.
+    #[error("at_m: the body has no shapes; write factor (how much it moves with each mode, -1 to 1)")]
+    NoShapes,
+    /// The body has no shapes and no mass, so that nothing says how far it moves.
+    #[error("factor: nothing says how far the body moves; write its mass_kg, or give modes with shapes")]
+    NoMass,
+}
+
 /// Why a surface or body was not added.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -109,6 +138,14 @@ pub enum AddError {
     /// A parameter the path stage, the impact model or the modal bank cannot be designed with.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// A pickup that reads nothing: which, what is wrong with it, what would be right.
+    #[error("pickup {number}: {problem}")]
+    Pickup {
+        /// Its channel, from 1.
+        number: usize,
+        /// What is wrong, and what would be right.
+        problem: PickupProblem,
+    },
     /// There is no such audio bus.
     #[error("bus: {bus} is refused; must be below {buses}, the number of buses under audio")]
     UnknownBus {

@@ -20,6 +20,7 @@ use crate::model::bad_value::{BadValue, held, within};
 pub use crate::model::contact_sample::ContactSample;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
+use crate::model::pickup::RigidMotion;
 use asperity_dsp::limits;
 pub use asperity_dsp::limits::{MAX_NORMAL_FORCE_N as MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV};
 
@@ -216,6 +217,13 @@ pub enum ContactEvent {
     },
     /// A rigid striker hits a body.
     Impact(Impact),
+    /// A body moves as a whole, for the accelerometers on it ([`Pickup`](crate::Pickup)).
+    Motion {
+        /// The body.
+        body: BodyId,
+        /// Motion at this instant, in its own axes.
+        motion: RigidMotion,
+    },
 }
 
 impl ContactEvent {

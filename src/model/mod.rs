@@ -21,6 +21,7 @@ pub(crate) mod levels;
 pub(crate) mod material;
 pub(crate) mod modal_model;
 pub(crate) mod mode_shapes;
+pub(crate) mod pickup;
 pub(crate) mod preset;
 pub(crate) mod probe;
 pub(crate) mod radiating;

@@ -97,6 +97,23 @@ impl StrikeField {
         })
     }
 
+    /// The point of the surface where a place lies, m.
+    #[must_use]
+    pub fn point_m(&self, place: &StrikePlace) -> [f64; 3] {
+        let corner = |i: usize| self.shapes.points_m[place.corners[i] as usize];
+        std::array::from_fn(|axis| (0..3).map(|i| f64::from(place.weights[i]) * corner(i)[axis]).sum())
+    }
+
+    /// Longest side of the box about the body, m.
+    #[must_use]
+    pub fn size_m(&self) -> f64 {
+        let side = |axis: usize| {
+            let along = || self.shapes.points_m.iter().map(|point| point[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        (0..3).map(side).fold(0.0, f64::max)
+    }
+
     /// Amplitude of every mode for 1 N·s there, in the unit of the file.
     #[must_use]
     pub fn amplitudes(&self, place: &StrikePlace) -> Vec<f64> {

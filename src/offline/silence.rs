@@ -312,7 +312,7 @@ fn hand(event: &LogEvent) -> Option<&LogHand> {
     match event {
         LogEvent::Begin { touching, .. } => Some(&touching.hand),
         LogEvent::Impact { hand, .. } => Some(hand),
-        LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
+        LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Motion { .. } | LogEvent::Edit(_) => None,
     }
 }
 
@@ -345,7 +345,7 @@ fn first_gap(log: &ContactLog, timeout_s: f64) -> Option<(f64, u64)> {
         let (contact, ends) = match line.event {
             LogEvent::Begin { contact, .. } | LogEvent::Move { contact, .. } => (contact, false),
             LogEvent::End { contact } => (contact, true),
-            LogEvent::Impact { .. } | LogEvent::Edit(_) => continue,
+            LogEvent::Impact { .. } | LogEvent::Motion { .. } | LogEvent::Edit(_) => continue,
         };
         let before_s = if ends { heard.remove(&contact) } else { heard.insert(contact, line.t) };
         gaps.extend(

@@ -12,6 +12,7 @@ use crate::resource::body_rub::{BodyRub, FrictionInput};
 use crate::resource::bursts::Bursts;
 use crate::resource::diffuse::DiffuseSeat;
 use crate::resource::impulse_ring::ImpulseRing;
+use crate::resource::pickup::{Heard, Pickups, PlacedPickup};
 use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY};
@@ -54,6 +55,8 @@ pub(crate) struct BodySlot {
     bursts: Bursts,
     diffuse: Option<Box<DiffuseSeat>>,
     click: Option<Click>,
+    /// For a body that is listened to at places of its own.
+    pickups: Option<Box<Pickups>>,
     /// Gain of impacts beside strokes.
     strike_gain: f64,
     /// Part that the bank leaves out of the first samples of strikes, in the output's units, as far
@@ -73,6 +76,10 @@ struct Place {
     touched: bool,
     /// All of it, while the stretch is rendered.
     input: [f32; MAX_BLOCK],
+    /// Something of it is in that stretch.
+    reached: bool,
+    /// Its strikes alone, where pickups ask for them.
+    struck: Option<Box<[f32; MAX_BLOCK]>>,
 }
 
 /// Way of rendering a stretch.
@@ -92,20 +99,27 @@ impl Place {
     ) -> Self {
         let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        Self { gains, first_samples, bus, contacts_n_s, touched: false, input }
+        let (touched, reached, struck) = (false, false, None);
+        Self { gains, first_samples, bus, contacts_n_s, touched, input, reached, struck }
     }
 
     fn is_silent(&self, position: u64) -> bool {
         !self.touched && self.bus.is_empty(position)
     }
 
-    /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
-    fn gather(&mut self, position: u64, n: usize) -> bool {
+    /// Gathers the impulses of the next `n` samples.
+    fn gather(&mut self, position: u64, n: usize) {
         let input = &mut self.input[..n];
         let busy = !self.bus.is_empty(position);
         // The bus is empty beyond the last impact.
         if busy {
             self.bus.take(position, input);
+        }
+        if let Some(struck) = &mut self.struck {
+            struck[..n].fill(0.0);
+            if busy {
+                struck[..n].copy_from_slice(input);
+            }
         }
         let contacts = input.iter_mut().zip(&mut self.contacts_n_s);
         match (busy, self.touched) {
@@ -115,7 +129,7 @@ impl Place {
             (true, false) => {}
             (false, false) => input.fill(0.0),
         }
-        busy | std::mem::take(&mut self.touched)
+        self.reached = busy | std::mem::take(&mut self.touched);
     }
 }
 
@@ -129,6 +143,7 @@ impl BodySlot {
         loudest_db_spl: f64,
         (kernel, seed): (Level, u64),
         (output_rate_hz, sample_rate_hz): (f64, f64),
+        pickups: &[PlacedPickup],
     ) -> Result<Self, DesignError> {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
@@ -152,7 +167,7 @@ impl BodySlot {
             let shares = modes.iter().filter(|_| mixed).map(|(_, shares)| shares[position]);
             Place::new(modal_bank::lane_gains(shares).collect(), first_samples, sample_rate_hz)
         });
-        let places = places.collect();
+        let mut places: Vec<Place> = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let strike = (model.impulse_n_s, model.residual.as_ref());
@@ -162,7 +177,7 @@ impl BodySlot {
         let diffuse = diffuse.transpose()?.flatten();
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
-        let units = match (&field, mass_kg) {
+        let units: Option<Box<[f64]>> = match (&field, mass_kg) {
             (Some(field), _) => Some(field.unit_motion().into()),
             (None, Some(mass_kg)) => Some(vec![(ANTINODE / mass_kg).sqrt(); plain.len()].into()),
             (None, None) => None,
@@ -171,6 +186,23 @@ impl BodySlot {
             modal_bank::lane_gains(modes.iter().map(|(_, shares)| shares[position])).collect()
         };
         let positions = (0..if field.is_some() { 0 } else { count }).map(at).collect();
+        let pickups = match &units {
+            Some(units) if !pickups.is_empty() => {
+                places.iter_mut().for_each(|place| place.struck = Some(Box::new([0.0; MAX_BLOCK])));
+                let gains = |pickup: &PlacedPickup| {
+                    let factor = pickup.pickup.factor.unwrap_or(0.0) as f32;
+                    let mut gains = vec![LaneGains([factor; modal_bank::LANES]); groups.len()];
+                    if let (Some(field), Some(place)) = (&field, &pickup.place) {
+                        field.fill(place, &mut gains);
+                    }
+                    (*pickup, gains)
+                };
+                let placed: Vec<_> = pickups.iter().map(gains).collect();
+                let of = (plain.as_slice(), &units[..]);
+                Some(Box::new(Pickups::new(&placed, of, (kernel, &levels), MOST_INPUTS, sample_rate_hz)?))
+            }
+            _ => None,
+        };
         let rub = units.map(|units| BodyRub::new(&plain, units, positions, kernel, sample_rate_hz));
         let rub = rub.transpose()?.map(Box::new);
         let ones = vec![LaneGains([1.0; modal_bank::LANES]); groups.len()].into();
@@ -184,6 +216,7 @@ impl BodySlot {
             bursts,
             diffuse,
             click: model.click,
+            pickups,
             strike_gain: 1.0,
             early,
         })
@@ -210,6 +243,7 @@ impl BodySlot {
         mode_level: usize,
         sample_rate_hz: f64,
     ) {
+        let own = pulse;
         let pulse = &HertzPulse { impulse_n_s: self.strike_gain * pulse.impulse_n_s, ..*pulse };
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
         let driven = self.levels[mode_level];
@@ -222,6 +256,13 @@ impl BodySlot {
                 place.first_samples[mode_level]
             }
         };
+        if let Some(pickups) = &mut self.pickups {
+            let gains = match (&self.field, &spot.place) {
+                (Some(field), Some(_)) => field.struck_gains(),
+                _ => &self.places[spot.position.min(self.places.len() - 1)].gains,
+            };
+            pickups.strike(gains, own, stamp, sample_rate_hz);
+        }
         let (sample, offset) = (stamp.sample(), stamp.fraction());
         // With the modes, which sound the ring's latency later.
         let sounds = sample + KERNEL_LATENCY as u64;
@@ -282,6 +323,11 @@ impl BodySlot {
         self
     }
 
+    /// Its pickups.
+    pub(crate) fn pickups(&mut self) -> Option<&mut Pickups> {
+        self.pickups.as_deref_mut()
+    }
+
     /// Forgets all that rings.
     fn rest(&mut self) {
         self.bank.silence();
@@ -292,6 +338,9 @@ impl BodySlot {
             rub.silence();
         }
         self.bursts.silence();
+        if let Some(pickups) = &mut self.pickups {
+            pickups.silence();
+        }
         if let Some(diffuse) = &mut self.diffuse {
             diffuse.rest();
         }
@@ -328,6 +377,7 @@ impl BodySlot {
             && self.places.iter().all(|place| place.is_silent(position))
             && self.field.as_ref().is_none_or(|field| field.is_silent(position))
             && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
+            && self.pickups.as_ref().is_none_or(|pickups| pickups.is_silent(position))
             && self.diffuse.as_ref().is_none_or(|diffuse| diffuse.is_silent(position))
     }
 
@@ -355,6 +405,9 @@ impl BodySlot {
     /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
     pub(crate) fn ring(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
         if self.is_silent(terms.position) {
+            if let Some(pickups) = &mut self.pickups {
+                pickups.rest();
+            }
             self.end_stretch(terms.position, out.len());
             return 0;
         }
@@ -391,8 +444,9 @@ impl BodySlot {
             });
         }
         // Only positions that something reaches are mixed; adding zeros would change nothing.
-        for place in &mut self.places {
-            if place.gather(terms.position, n) || count == 0 {
+        self.places.iter_mut().for_each(|place| place.gather(terms.position, n));
+        for place in &self.places {
+            if place.reached || count == 0 {
                 inputs[count] = Input { impulses: &place.input[..n], gains: &place.gains };
                 count += 1;
             }
@@ -411,6 +465,17 @@ impl BodySlot {
                 count += 1;
             });
         }
+        if let Some(pickups) = &mut self.pickups {
+            let strikes = self.field.as_ref().map_or(0, |field| field.strikes_at(terms.position));
+            let heard = inputs[..count].iter().enumerate().map(|(i, input)| {
+                let of = |place: &&Place| std::ptr::eq(place.input.as_ptr(), input.impulses.as_ptr());
+                let own = || self.places.iter().find(of).and_then(|place| place.struck.as_deref());
+                let struck =
+                    if i < strikes { Some(input.impulses) } else { own().map(|struck| &struck[..n]) };
+                Heard { input: *input, struck }
+            });
+            pickups.render(terms.position, n, self.strike_gain, heard);
+        }
         let inputs = match inputs[..count] {
             [Input { impulses, gains: [] }] => Inputs::One(impulses),
             _ => Inputs::Placed(&inputs[..count]),
@@ -423,6 +488,12 @@ impl BodySlot {
     /// The stretch has been rendered, or nothing rings in it.
     fn end_stretch(&mut self, position: u64, n: usize) {
         let retuned = self.field.as_mut().and_then(|field| field.end_stretch(position, n, &mut self.bank));
+        if let Some(pickups) = &mut self.pickups
+            && let Some(group) = retuned
+            && let Some(modes) = self.field.as_ref().and_then(|field| field.modes_now(group))
+        {
+            pickups.retune(group, &modes);
+        }
         let Some(rub) = &mut self.rub else { return };
         if let Some(group) = retuned
             && let Some(modes) = self.field.as_ref().and_then(|field| field.modes_now(group))

@@ -36,6 +36,8 @@ pub(crate) struct BodyField {
     holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
+    /// The one of `strikes` that was struck last.
+    last_struck: usize,
     /// Largest change of a gain within a cell.
     glide: f32,
     sample_rate_hz: f64,
@@ -78,6 +80,7 @@ impl BodyField {
             holding: Holding::new(shapes, modes, groups, sample_rate_hz),
             strikes: (0..STRIKES).map(|_| struck()).collect(),
             sliders: (0..SLIDERS).map(|_| Slider::new(groups.len())).collect(),
+            last_struck: 0,
             glide: slider::glide(sample_rate_hz),
             sample_rate_hz,
             position: 0,
@@ -95,7 +98,8 @@ impl BodyField {
     ) -> OnsetCorrection {
         let free = self.strikes.iter().position(|struck| struck.bus.is_empty(self.position));
         let soonest = || (0..STRIKES).min_by_key(|&i| self.strikes[i].bus.busy_until());
-        let struck = &mut self.strikes[free.or_else(soonest).unwrap_or(0)];
+        self.last_struck = free.or_else(soonest).unwrap_or(0);
+        let struck = &mut self.strikes[self.last_struck];
         if free.is_some() {
             fill(&self.motion, self.points, place, &mut struck.gains);
         }
@@ -106,6 +110,16 @@ impl BodyField {
             sum.add(missing, f64::from(share));
         }
         sum.first_samples()
+    }
+
+    /// Gains of the newest strike.
+    pub(crate) fn struck_gains(&self) -> &[LaneGains] {
+        &self.strikes[self.last_struck].gains
+    }
+
+    /// Number of leading inputs that are strikes.
+    pub(crate) fn strikes_at(&self, position: u64) -> usize {
+        self.strikes.iter().filter(|struck| !struck.bus.is_empty(position)).count()
     }
 
     /// Adds what a contact sends at its place during the present stretch; false where every slider

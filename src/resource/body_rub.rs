@@ -31,7 +31,8 @@ const SETTLE_CELLS: usize = 8;
 /// A gain nearer than this to the one that a group was designed for is the same.
 const SAME: f32 = 1e-4;
 /// The speed's modes hear the taps of a force and undo them themselves.
-const SPEED: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+const SPEED: GroupOptions =
+    GroupOptions { impulse_kernel_compensation: false, true_t60: true, derivative: 0 };
 /// Nothing rubs.
 const STILL: Sweep = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s: 0.0 };
 

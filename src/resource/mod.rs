@@ -12,6 +12,7 @@ pub(crate) mod holding;
 pub(crate) mod impulse_ring;
 pub(crate) mod long_waves;
 pub(crate) mod overlay;
+pub(crate) mod pickup;
 pub(crate) mod probe;
 pub(crate) mod rolled_over;
 pub(crate) mod slider;

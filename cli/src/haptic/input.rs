@@ -145,7 +145,7 @@ pub fn strokes_s(log: &ContactLog, channel: usize) -> Vec<f64> {
     let felt_here = |event: &LogEvent| match event {
         LogEvent::Begin { touching, .. } => touching.hand.actuator,
         LogEvent::Impact { hand, .. } => hand.actuator,
-        LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
+        LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Motion { .. } | LogEvent::Edit(_) => None,
     };
     let here = |actuator: Option<u16>| actuator.is_some_and(|actuator| usize::from(actuator) == channel);
     log.lines.iter().filter(|line| here(felt_here(&line.event))).map(|line| line.t).collect()

@@ -204,6 +204,10 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
+    if !render.pickup.is_empty() {
+        let pickup: Vec<&[f32]> = render.pickup.iter().map(Vec::as_slice).collect();
+        wav::write(&mut outputs, &with_suffix(stem, "pickup.wav"), &pickup, rate_hz)?;
+    }
     let mut report = report(&render, kernel, levels, watching);
     report.warnings = unread.iter().map(|place| read_past(place)).chain(remarks).collect();
     let full_scale = report.full_scale.clone();
@@ -251,7 +255,8 @@ fn check_outputs(options: &Options, file: &SceneFile) -> Result<(), CliError> {
     let sand = |surface: &SurfaceEntry| {
         matches!(surface.source, Source::Sand(_)).then(|| sand_suffix(&surface.name))
     };
-    let suffixes = ["audio.wav", "haptic.wav", "trace.csv", "force.csv", "svg"].map(str::to_owned);
+    let suffixes =
+        ["audio.wav", "haptic.wav", "pickup.wav", "trace.csv", "force.csv", "svg"].map(str::to_owned);
     let of_stem = suffixes.into_iter().chain(file.surfaces.iter().filter_map(sand));
     of_stem
         .map(|suffix| with_suffix(&options.output, &suffix))
@@ -371,7 +376,7 @@ fn play(
 
 /// The engine promises finite samples; a promise that a WAV file depends on is checked.
 fn check_finite(render: &Render) -> Result<(), CliError> {
-    let channels = render.haptic.iter().chain(&render.audio);
+    let channels = render.haptic.iter().chain(&render.audio).chain(&render.pickup);
     if channels.flatten().all(|sample| sample.is_finite()) {
         Ok(())
     } else {

@@ -17,7 +17,8 @@ use asperity_dsp::simd::{Isa, Level};
 
 const MODES: usize = 256;
 const SAMPLES: usize = 16_384;
-const OPTIONS: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+const OPTIONS: GroupOptions =
+    GroupOptions { impulse_kernel_compensation: false, true_t60: true, derivative: 0 };
 const CULLING_REFERENCE: &str = "all 256 modes of a body under the strokes of the named cases, same numbers";
 const STRUCK_CULLING_REFERENCE: &str = "all 256 modes of a struck body, same numbers";
 const SLEEP_REFERENCE: &str = "256 modes of a body struck once that all ring on for 6 s";

@@ -17,17 +17,22 @@ pub struct GroupOptions {
     pub impulse_kernel_compensation: bool,
     /// Undo on the 64-sample grid what rounding R² and m to `f32` did to decay and pitch.
     pub true_t60: bool,
+    /// Time derivatives of the modes' responses that sound instead of them, 0 to 2, for modes that
+    /// begin at zero (`phase_rad` 0): of a displacement its velocity or its acceleration, to which
+    /// a force belongs while it lasts (the pulse in the second derivative of a response that begins
+    /// with a slope). That share is the direct term's, as wide as the ring's kernel.
+    pub derivative: u8,
 }
 
 impl Default for GroupOptions {
     fn default() -> Self {
-        Self { impulse_kernel_compensation: false, true_t60: true }
+        Self { impulse_kernel_compensation: false, true_t60: true, derivative: 0 }
     }
 }
 
 impl GroupOptions {
     /// For a bank that listens to an impulse ring: compensated and trimmed.
-    pub const IMPULSE_RING: Self = Self { impulse_kernel_compensation: true, true_t60: true };
+    pub const IMPULSE_RING: Self = Self { impulse_kernel_compensation: true, true_t60: true, derivative: 0 };
 }
 
 /// Coefficients of 16 modes, one a lane; plain data the caller stores. An unused lane is silent.
@@ -121,6 +126,8 @@ pub(super) struct Pole {
     /// Added to h₀: ∫ h − Σ hⱼ, j ≥ 0, of the wanted mode's continuous and this one's sampled
     /// response.
     pub direct_correction: f64,
+    /// Added to h₀: what passes at once, of the second derivative.
+    pub passed: f64,
 }
 
 impl Pole {
@@ -135,13 +142,15 @@ impl Pole {
             return Ok(None);
         }
         let (decay, theta) = (d / rate, 2.0 * PI * f / rate);
+        let (mode, passed) = derived(mode, options.derivative);
         let (mut amplitude, mut phase_rad) = (mode.amplitude, mode.phase_rad);
         if options.impulse_kernel_compensation {
             let (gain, angle) = crate::hertz::kernel_at(decay, theta);
             amplitude /= gain;
             phase_rad -= angle;
         }
-        let mut pole = Self { decay, theta, amplitude, phase_rad, direct_correction: 0.0 };
+        let passed = passed * rate;
+        let mut pole = Self { decay, theta, amplitude, phase_rad, direct_correction: 0.0, passed };
         if options.impulse_kernel_compensation {
             // A steady force is answered as by the equation; so is a slow one, up to its first
             // derivative.
@@ -160,6 +169,21 @@ impl Pole {
         let b0 = self.amplitude * libm::sin(self.phase_rad);
         (b0, self.amplitude * r * libm::sin(self.theta - self.phase_rad))
     }
+}
+
+/// A mode that sounds as so many derivatives of another, and the impulse at the onset of the last.
+///
+/// ```text
+/// d/dt a e^(−dt) sin(ωt + φ) = a ω₀ e^(−dt) sin(ωt + φ + ψ)        ω₀² = ω² + d²,   ψ = atan2(ω, −d)
+/// ```
+fn derived(mode: &Mode, derivatives: u8) -> (Mode, f64) {
+    let (omega, mut of, mut onset) = (2.0 * PI * mode.frequency_hz, *mode, 0.0);
+    for _ in 0..derivatives {
+        onset = of.amplitude * libm::sin(of.phase_rad);
+        of.amplitude *= libm::hypot(omega, mode.decay_per_s);
+        of.phase_rad += libm::atan2(omega, -mode.decay_per_s);
+    }
+    (of, onset)
 }
 
 impl ModeGroup {
@@ -194,7 +218,7 @@ impl ModeGroup {
         for (i, x) in out_of([h1, h2, h3, h4, h5]).into_iter().enumerate() {
             set(OUT + i, x);
         }
-        let direct = b0 + pole.direct_correction;
+        let direct = b0 + pole.direct_correction + pole.passed;
         self.direct[lane] = direct as f32;
         for (sum, h) in self.heard_as.iter_mut().zip([direct, h1, h2, h3]) {
             *sum += h as f32;

@@ -60,8 +60,18 @@ impl OnsetSamples {
     /// # Errors
     /// Names the field that is out of range.
     pub fn of(mode: &Mode, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let plain = GroupOptions { impulse_kernel_compensation: false, ..GroupOptions::IMPULSE_RING };
-        let heard = Pole::new(mode, sample_rate_hz, &GroupOptions::IMPULSE_RING)?;
+        Self::of_derivative(mode, 0, sample_rate_hz)
+    }
+
+    /// One mode of a bank that sounds as so many time derivatives ([`GroupOptions::derivative`]).
+    /// What passes at once stays as wide as the ring's kernel.
+    ///
+    /// # Errors
+    /// Names the field that is out of range.
+    pub fn of_derivative(mode: &Mode, derivative: u8, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let ring = GroupOptions { derivative, ..GroupOptions::IMPULSE_RING };
+        let plain = GroupOptions { impulse_kernel_compensation: false, ..ring };
+        let heard = Pole::new(mode, sample_rate_hz, &ring)?;
         let (Some(heard), Some(wanted)) = (heard, Pole::new(mode, sample_rate_hz, &plain)?) else {
             return Ok(Self::NOTHING);
         };

@@ -34,7 +34,8 @@ impl ReferenceMode {
         };
         let r = libm::exp(-pole.decay);
         let (b0, b1) = pole.numerator();
-        let (a1, a2, direct) = (2.0 * r * libm::cos(pole.theta), -r * r, pole.direct_correction);
+        let (a1, a2, direct) =
+            (2.0 * r * libm::cos(pole.theta), -r * r, pole.direct_correction + pole.passed);
         // The direct term is a third tap of the numerator.
         Ok(Self { a1, a2, b0: b0 + direct, b1: b1 - direct * a1, b2: -direct * a2 })
     }

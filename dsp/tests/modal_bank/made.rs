@@ -9,7 +9,8 @@ use asperity_dsp::simd::{Isa, Level};
 use std::f64::consts::PI;
 
 pub const RATES_HZ: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
-pub const PLAIN: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+pub const PLAIN: GroupOptions =
+    GroupOptions { impulse_kernel_compensation: false, true_t60: true, derivative: 0 };
 
 pub fn kernels() -> Vec<Level> {
     Isa::ALL.into_iter().filter_map(Level::find).collect()

@@ -59,7 +59,7 @@ impl Renderer {
                 }
             }
             // The scene turns impacts into strikes before they are sent.
-            ContactEvent::Impact(_) => {}
+            ContactEvent::Impact(_) | ContactEvent::Motion { .. } => {}
         }
     }
 

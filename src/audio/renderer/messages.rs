@@ -20,7 +20,11 @@ impl Renderer {
     pub(super) fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let to_event = match self.from_game.peek() {
-            Some(Message::Event { stamp, epoch, .. } | Message::Strike { stamp, epoch, .. }) => {
+            Some(
+                Message::Event { stamp, epoch, .. }
+                | Message::Strike { stamp, epoch, .. }
+                | Message::Motion { stamp, epoch, .. },
+            ) => {
                 let sample = turn(&self.counters, self.position, *stamp, *epoch).sample();
                 usize::try_from(sample.saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
             }
@@ -34,7 +38,9 @@ impl Renderer {
             let ended = self.time_has_ended();
             let Some(message) = self.from_game.peek() else { return };
             let due = match message {
-                Message::Event { stamp, epoch, .. } | Message::Strike { stamp, epoch, .. } => {
+                Message::Event { stamp, epoch, .. }
+                | Message::Strike { stamp, epoch, .. }
+                | Message::Motion { stamp, epoch, .. } => {
                     ended || turn(&self.counters, self.position, *stamp, *epoch).sample() <= self.position
                 }
                 Message::Reset => true,
@@ -55,7 +61,7 @@ impl Renderer {
         match message {
             Message::Reset => self.resets += 1,
             // It waited for a time that has ended.
-            Message::Event { stamp, .. } | Message::Strike { stamp, .. }
+            Message::Event { stamp, .. } | Message::Strike { stamp, .. } | Message::Motion { stamp, .. }
                 if self.time_has_ended() && stamp.sample() > self.position =>
             {
                 Counters::add(&self.counters.superseded, 1);
@@ -89,6 +95,11 @@ impl Renderer {
                 }
                 if let Some(felt) = felt {
                     self.feel(felt, &pulse, stamp);
+                }
+            }
+            Message::Motion { slot, motion, alpha, over, .. } => {
+                if let Some(pickups) = self.bodies[slot].pickups() {
+                    pickups.moves(&motion, alpha, over);
                 }
             }
             Message::AddProbe { index, probe } => {

@@ -322,7 +322,7 @@ fn weigh(block: &mut [f32], master: &[f32]) {
 }
 
 /// Silence in each output from a sample of its own on.
-fn clear_beyond(outputs: &mut [&mut [f32]], written: impl Fn(usize) -> usize) {
+pub(super) fn clear_beyond(outputs: &mut [&mut [f32]], written: impl Fn(usize) -> usize) {
     for (index, out) in outputs.iter_mut().enumerate() {
         // Mostly nothing is left, which would still cost a call.
         if let Some(rest) = out.get_mut(written(index)..).filter(|rest| !rest.is_empty()) {

@@ -127,6 +127,18 @@ const EVENTS: &[Event] = &[
         ],
         read_past: &[],
     },
+    Event {
+        name: "motion",
+        needs: &[(("body", Holds::Text), &[], "\"body\":\"NAME\", a body of the scene")],
+        takes: &[
+            ("acceleration_m_s2", Holds::Triple),
+            ("gravity_m_s2", Holds::Triple),
+            ("angular_velocity_rad_s", Holds::Triple),
+            ("centre_m", Holds::Triple),
+        ],
+        // Everything is in the body's own axes.
+        read_past: &["rotation"],
+    },
     edit("add_body", BODY),
     edit("replace_body", BODY),
     edit("remove_body", &[("body", Holds::Any)]),
@@ -218,7 +230,7 @@ pub(super) fn line(
 
 /// The event of a line, or what is wrong with it: key, what is wrong, what would be right.
 fn event_of(keys: &Map<String, Value>) -> Result<&'static Event, (String, String, String)> {
-    let usual = "\"begin\", \"move\", \"end\" or \"impact\"";
+    let usual = "\"begin\", \"move\", \"end\", \"impact\" or \"motion\"";
     let Some(written) = keys.get("event") else {
         let meant = keys.keys().find(|key| nearest(key, &["event"]).is_some());
         return Err(match meant {

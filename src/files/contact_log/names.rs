@@ -78,6 +78,9 @@ impl LogEvent {
                 probe: hand.probe(names)?,
                 gain: hand.gain.unwrap_or(1.0),
             }),
+            Self::Motion { body, motion } => {
+                ContactEvent::Motion { body: find("body", body, &names.bodies)?, motion: *motion }
+            }
             Self::Edit(_) => return Err(LogError::Edit),
         })
     }

@@ -3,6 +3,7 @@
 use super::fields::{self, Fields};
 use crate::files::FileError;
 use crate::model::material::Material;
+use crate::model::pickup::Pickup;
 use crate::model::stock::Stock;
 use crate::parameters;
 use std::path::{Path, PathBuf};
@@ -33,6 +34,8 @@ pub struct BodyEntry {
     pub mass_kg: Option<f64>,
     /// Name of the bus it plays on; none = the first.
     pub bus: Option<String>,
+    /// Pickups on it.
+    pub pickups: Vec<Pickup>,
 }
 
 /// Reads one `[[body]]`.
@@ -52,6 +55,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         least_time_s: fields.number(&parameters::body::LEAST_TIME_S)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,
         bus: fields.text("bus")?,
+        pickups: Vec::new(),
     };
     if body.modes.is_some() && body.stock.is_some() {
         return Err(fields.refuse("stock", "stands beside modes", "write one of them"));

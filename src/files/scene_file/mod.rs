@@ -8,6 +8,7 @@ mod body;
 mod fields;
 mod named_files;
 mod own;
+mod pickup;
 mod pixels;
 mod probe;
 mod sand;
@@ -16,6 +17,7 @@ mod surface;
 
 pub use body::BodyEntry;
 pub use own::{MakeSource, OwnSource};
+pub use pickup::PickupEntry;
 pub use pixels::Pixels;
 pub use sand::{Sand, ToolPicture};
 pub use source::{Brownian, Lattice, Source};
@@ -62,6 +64,8 @@ pub struct SceneFile {
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
     pub audio: Vec<AudioEntry>,
+    /// Channels of pickups, in order; their places are their bodies'.
+    pub pickups: Vec<PickupEntry>,
 }
 
 /// One haptic channel.
@@ -185,6 +189,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     top.whole("version", 1, 1)?;
     let (probe, probes) = probe::read_all(&mut top)?;
     let audio = read_buses(&mut top)?;
+    let pickups = pickup::read_all(&mut top, &mut bodies)?;
     let scene = SceneFile {
         path: path.to_owned(),
         sample_rate_hz: top.number(&parameters::scene::SAMPLE_RATE_HZ)?,
@@ -197,6 +202,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
         probes,
         actuators,
         audio,
+        pickups,
     };
     top.finish()?;
     check_names(&scene)?;

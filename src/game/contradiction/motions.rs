@@ -120,7 +120,7 @@ impl Motions {
                 self.contacts.remove(contact);
                 return;
             }
-            ContactEvent::Impact(_) => return,
+            ContactEvent::Impact(_) | ContactEvent::Motion { .. } => return,
         };
         let last = self.contacts.get(&contact).copied();
         let surface = match (event, last) {

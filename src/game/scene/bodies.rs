@@ -152,23 +152,25 @@ impl Scene {
         let sends = body.sends;
         let strike_gain = within("strike_gain", level.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
-        let audible = self.config.culling.filter(|_| rested.is_none());
+        // What nobody hears may be what a pickup reads.
+        let audible = self.config.culling.filter(|_| rested.is_none() && body.pickups.is_empty());
         let audible = audible.map(|culling| model.audible(rate, &culling));
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
         let rubs_on = self.surfaces.iter().any(|(_, known)| known.body == Some(id) && known.rubs);
         let heard = audible.as_ref().unwrap_or(model);
+        let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
+        let pickups = self.placed_pickups(body, field.as_deref())?;
         let body = if let Some(Made { slot, of }) = rested {
             Made { slot: slot.rested(), of }
         } else {
             let loudest_db_spl = self.loudest_db_spl(body, strike_gain);
             let at_level = Levels::model_at(heard, level.gain)?;
             let seeded = (self.kernel, self.config.seed);
-            let slot = BodySlot::new(&at_level, mass_kg, loudest_db_spl, seeded, (rate, inner))?;
+            let slot = BodySlot::new(&at_level, mass_kg, loudest_db_spl, seeded, (rate, inner), &pickups)?;
             Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
         };
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
         let known = KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some(), level };
         if rubs_on && !known.can_be_rubbed() {
             return Err(AddError::CannotRub);
@@ -204,6 +206,7 @@ impl Scene {
         self.bodies.remove(body.0);
         self.given.remove(&body);
         self.sounded.remove(&body);
+        self.moved.remove(&body);
         self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
         Ok(())
     }

@@ -133,7 +133,7 @@ impl Scene {
                 let factor = bodies.map(|id| self.level_of(id).blow_factor(pulse));
                 ContactEvent::Impact(Impact { gain: impact.gain * factor.fold(1.0, f64::min), ..impact })
             }
-            ContactEvent::End { .. } => event,
+            ContactEvent::End { .. } | ContactEvent::Motion { .. } => event,
         }
     }
 

@@ -20,6 +20,7 @@ impl Scene {
             sample_rate_hz: self.config.sample_rate_hz,
             haptic_channels: self.config.actuators.len(),
             audio_buses: self.config.audio.len(),
+            pickup_channels: self.config.pickups.len(),
             voices: self.config.voices(),
             picture: &|surface: SurfaceId| self.surfaces.get(surface.0)?.picture.clone(),
         };

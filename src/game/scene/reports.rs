@@ -65,6 +65,9 @@ impl Scene {
     }
 
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+        if let ContactEvent::Motion { body, motion } = event {
+            return self.report_motion(time_s, body, motion);
+        }
         let told = event;
         let (event, held) = self.checked(event)?;
         self.checked_time(time_s)?;
@@ -144,7 +147,7 @@ impl Scene {
             ContactEvent::Impact(impact) => {
                 [Some(impact.body), impact.other, impact.holder].into_iter().flatten().any(has_modes)
             }
-            ContactEvent::Moved { .. } | ContactEvent::End { .. } => false,
+            ContactEvent::Moved { .. } | ContactEvent::End { .. } | ContactEvent::Motion { .. } => false,
         }
     }
 
@@ -160,10 +163,12 @@ impl Scene {
                 self.send_contact(stamp, event)
             }
             ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
+            // It takes its own way.
+            ContactEvent::Motion { .. } => Ok(()),
         }
     }
 
-    fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
+    pub(super) fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
         if self.clock.is_live() {
             within("time_s", time_s, limits::LIVE_TIME_S)?;
             return Ok(());
@@ -196,7 +201,7 @@ impl Scene {
                 let (sample, held) = sample.held()?;
                 (ContactEvent::moved_with(contact, sample, emphasis.checked()?), held)
             }
-            ContactEvent::End { .. } => (event, false),
+            ContactEvent::End { .. } | ContactEvent::Motion { .. } => (event, false),
             ContactEvent::Impact(impact) => {
                 for body in [Some(impact.body), impact.other].into_iter().flatten() {
                     self.known_body(body).map_err(|_| Refusal::UnknownBody)?;

@@ -83,7 +83,7 @@ impl Scene {
                     touched.gain = emphasis.gain.unwrap_or(touched.gain);
                 }
             }
-            ContactEvent::End { .. } | ContactEvent::Impact(_) => {}
+            ContactEvent::End { .. } | ContactEvent::Impact(_) | ContactEvent::Motion { .. } => {}
         }
     }
 

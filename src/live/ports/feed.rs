@@ -11,6 +11,8 @@ pub enum Feed {
     Haptic(ChannelId),
     /// Samples of a bus.
     Bus(usize),
+    /// Samples of a channel of pickups.
+    Pickup(usize),
 }
 
 impl Feed {
@@ -24,7 +26,8 @@ impl Feed {
             Self::Bus(bus) if bus >= setup.audio_buses => {
                 Err(AddError::UnknownBus { bus, buses: setup.audio_buses })
             }
-            Self::Haptic(_) | Self::Bus(_) => Ok(()),
+            Self::Pickup(channel) if channel >= setup.pickup_channels => Err(AddError::Unknown("pickup")),
+            Self::Haptic(_) | Self::Bus(_) | Self::Pickup(_) => Ok(()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! PCM port: the samples of a haptic channel or an audio bus, exactly as they leave the engine.
+//! PCM port: the samples of a haptic channel, an audio bus or a pickup, exactly as they leave the engine.
 
 use super::Feed;
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
@@ -53,6 +53,12 @@ impl Outlet for PcmOutlet {
 
     fn bus(&mut self, bus: usize, _first: u64, samples: &[f32]) {
         if self.from == Feed::Bus(bus) {
+            self.words.write(samples.iter().map(|x| x.to_bits()));
+        }
+    }
+
+    fn pickup(&mut self, channel: usize, _first: u64, samples: &[f32]) {
+        if self.from == Feed::Pickup(channel) {
             self.words.write(samples.iter().map(|x| x.to_bits()));
         }
     }

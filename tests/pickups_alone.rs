@@ -1,0 +1,3 @@
+#[path = "common/closed_forms.rs"]
+mod closed_forms;
+mod pickups;
