@@ -131,7 +131,7 @@ pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
 pub use model::pickup::{Pickup, PickupQuantity, RigidMotion};
 pub use model::preset::Preset;
-pub use model::probe::{PROBE_PRESETS, THING_PROBE, probe_by_name};
+pub use model::probe::{PROBE_PRESETS, THING_PROBE, probe_by_name, thing_with_face};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;
 pub use model::strike_field::{StrikeField, StrikePlace};

@@ -11,6 +11,7 @@ mod changes;
 #[path = "common/closed_forms.rs"]
 mod closed_forms;
 mod common;
+mod contact_force;
 mod contacts_of_every_kind;
 mod contacts_side_by_side;
 mod contractive;

@@ -56,6 +56,13 @@ pub const PROBE_PRESETS: [(&str, Probe); 9] = [
 /// body of its own mass. With the tip, 8 dB softer, a barrel rolled louder than it slid.
 pub const THING_PROBE: Probe = RIGID;
 
+/// Probe of a thing that lies with a face of this length along the stroke, m: `rigid` with
+/// [`face_m`](Probe::face_m), whose asperities share the load.
+#[must_use]
+pub const fn thing_with_face(face_m: f64) -> Probe {
+    Probe { tip: tip(Material::PLASTIC, 1e-3, 20.0, 1e-3), face_m, asperities: FACE_ASPERITIES, ..RIGID }
+}
+
 const FINGERTIP: Probe = Probe {
     pad_mass_kg: contact::PAD_MASS_KG,
     pad_stiffness_n_m: contact::PAD_STIFFNESS_N_M,

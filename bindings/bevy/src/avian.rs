@@ -12,9 +12,10 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::{ChannelId, ContactEvent, THING_PROBE, UvPlace};
+use asperity::{ChannelId, ContactEvent, UvPlace};
 use asperity_pairs::{
-    Motion, Notice, ODD_GRAVITY_M_S2, Pair, Side, Solved, Step, Thing, Vec3, axis_radius_m, mobility_per_kg,
+    Motion, Notice, ODD_GRAVITY_M_S2, Pair, Points, Probes, Side, Solved, Step, Thing, Vec3, axis_radius_m,
+    mobility_per_kg,
 };
 use avian3d::dynamics::rigid_body::{RigidBodyQueryReadOnly, RigidBodyQueryReadOnlyItem};
 use avian3d::math::Vector;
@@ -24,7 +25,7 @@ use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time};
 use std::collections::{BTreeMap, HashSet};
 
-/// Name of the probe that things touch with, in recordings.
+/// Name of the probe that things touch with, in recordings; with a face it goes on with its length.
 pub const RIGID_PROBE: &str = "avian's rigid things";
 /// Ids of these contacts begin here, so that the app's own stay free below.
 const FIRST_CONTACT: u64 = 1 << 33;
@@ -45,12 +46,12 @@ impl Plugin for AvianTouchPlugin {
                 "asperity hears no avian: AsperityPlugin has to be added before, and to be built"
             );
         };
-        match touch.scene().add_probe(THING_PROBE) {
-            Ok(rigid) => {
-                touch.name_own_probe(RIGID_PROBE, rigid);
+        match Probes::add(touch.scene()) {
+            Ok(probes) => {
+                probes.named(RIGID_PROBE).for_each(|(name, id)| touch.name_own_probe(&name, id));
                 let pairs = BTreeMap::new();
                 let told = HashSet::new();
-                app.insert_resource(Listener { rigid, pairs, next_contact: FIRST_CONTACT, told });
+                app.insert_resource(Listener { probes, pairs, next_contact: FIRST_CONTACT, told });
                 app.add_systems(
                     FixedPostUpdate,
                     listen.after(PhysicsSystems::Last).in_set(TouchSystems::Report),
@@ -64,7 +65,7 @@ impl Plugin for AvianTouchPlugin {
 /// Pairs that avian lists, in order, so that the same world gives the same events.
 #[derive(Resource)]
 struct Listener {
-    rigid: asperity::ProbeId,
+    probes: Probes,
     pairs: BTreeMap<[Entity; 2], Listed>,
     next_contact: u64,
     /// Entities that were warned of because they are silent; none: the world.
@@ -92,10 +93,12 @@ fn told(v: Vector) -> Vec3 {
 fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
     let (mut point_m, mut normal) = (Vector::ZERO, Vector::ZERO);
     let (mut impulse_n_s, mut closing_m_s, mut restitution) = (0.0, 0.0f32, 0.0f32);
+    let mut points = Points::default();
     for manifold in &pair.manifolds {
         for point in &manifold.points {
             let overlaps = f32::from(u8::from(nominal_n_s > 0.0 && point.penetration >= 0.0));
             let weight = if nominal_n_s > 0.0 { overlaps } else { point.normal_impulse };
+            points.add(told(point.point));
             point_m += point.point * weight;
             normal += manifold.normal * weight;
             impulse_n_s += weight;
@@ -110,6 +113,7 @@ fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
         restitution,
         closing_m_s,
         is_nominal: nominal_n_s > 0.0,
+        points,
     })
 }
 
@@ -219,7 +223,7 @@ fn listen(
     mut listener: ResMut<Listener>,
     mut touch: ResMut<Touch>,
 ) {
-    let Listener { rigid, pairs, next_contact, told: warned } = &mut *listener;
+    let Listener { probes, pairs, next_contact, told: warned } = &mut *listener;
     let gravity_m_s2 = gravity.0.length();
     if gravity_m_s2 > ODD_GRAVITY_M_S2 && warned.insert(None) {
         log::warn!("asperity: {}", Notice::Gravity { m_s2: gravity_m_s2 });
@@ -240,7 +244,7 @@ fn listen(
         let step = Step {
             sides: [&first, &second],
             solved: solved(contact, nominal_n_s),
-            rigid: *rigid,
+            probes: *probes,
             step_s: time.delta_secs(),
         };
         let listed = pairs.entry(entities).or_default();

@@ -19,7 +19,7 @@ use bevy_rapier3d::rapier::prelude::ColliderHandle;
 use bevy_time::{Fixed, Time};
 use std::collections::HashMap;
 
-/// Name of the probe that things touch with, in recordings.
+/// Name of the probe that things touch with, in recordings; with a face it goes on with its length.
 pub const RIGID_PROBE: &str = "rapier's rigid things";
 
 /// Listens to the physics; to be added after [`AsperityPlugin`](crate::AsperityPlugin).
@@ -41,7 +41,8 @@ impl Plugin for RapierTouchPlugin {
         };
         match Adapter::new(touch.scene()) {
             Ok(adapter) => {
-                touch.name_own_probe(RIGID_PROBE, adapter.rigid_probe());
+                let named = adapter.named_probes(RIGID_PROBE);
+                named.for_each(|(name, id)| touch.name_own_probe(&name, id));
                 app.insert_resource(Listener { adapter, known: HashMap::new() });
                 app.add_systems(
                     FixedUpdate,

@@ -1,6 +1,6 @@
 //! Events: numbers of a script as events of the engine.
 
-use asperity::{BodyId, ChannelId, ContactSample, Impact, Material, SurfaceId, Touching};
+use asperity::{BodyId, ChannelId, ContactSample, Impact, Material, ProbeId, SurfaceId, Touching};
 use godot::prelude::*;
 
 /// Number of a contact, from a script's to the engine's.
@@ -65,9 +65,10 @@ pub(crate) fn sample(
 }
 
 /// Touch of a surface by a channel.
-pub(crate) fn touching(surface: i64, number: i64) -> Result<Touching, String> {
+pub(crate) fn touching(surface: i64, number: i64, probe: i64) -> Result<Touching, String> {
     let mut touching = Touching::on(SurfaceId::from_bits(surface as u64));
     touching.actuator = channel(number)?;
+    touching.probe = (probe != 0).then(|| ProbeId::from_bits(probe as u64));
     Ok(touching)
 }
 

@@ -125,6 +125,7 @@ impl AsperityFinger3D {
             slip_m_s,
             radius_m,
             velocity_m_s,
+            0,
         );
         if begun {
             self.touched = surface;

@@ -198,6 +198,22 @@ impl AsperityWorld {
         self.join_surface(&surface, body, &name.to_string())
     }
 
+    /// Adds what touches, a table as a scene file's `[probe]` (`preset = "rigid"`, `face_m = 0.4` for
+    /// a crate), and gives its id for `report_begin`; best before the surfaces, which get ready for
+    /// it. 0, and an error, where it is refused.
+    #[func]
+    fn add_probe(&mut self, table: GString, name: GString) -> i64 {
+        let added = self.tried("add_probe", |running| {
+            let probe = Scene::read_probe(&table.to_string()).map_err(|error| error.to_string())?;
+            let id = running.scene.add_probe(probe).map_err(|error| error.to_string())?;
+            if !name.is_empty() {
+                running.names.probes.insert(name.to_string(), id);
+            }
+            Ok(id.to_bits() as i64)
+        });
+        added.unwrap_or(0)
+    }
+
     /// Takes a surface away; contacts on it fade. Its id is refused from then on.
     #[func]
     fn remove_surface(&mut self, id: i64) -> bool {
@@ -229,7 +245,8 @@ impl AsperityWorld {
     /// channel feels it (-1: none). Report once a physics tick; the time is the tick's. What rolls
     /// tells with every report how fast it slips where it touches, m/s (0: it only rolls), and its
     /// radius, m; left out, it is a stroke. How fast it moves along u and v, m/s, tells whoever
-    /// knows it: contact points of a physics engine hop, and without it each hop is a motion.
+    /// knows it: contact points of a physics engine hop, and without it each hop is a motion. What
+    /// touches is the engine's own probe (0) or that of `add_probe`.
     /// False, and an error, where it is refused.
     #[func]
     #[allow(
@@ -246,9 +263,10 @@ impl AsperityWorld {
         #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
         #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
         #[opt(default = events::NO_VELOCITY)] velocity_m_s: Vector2,
+        #[opt(default = 0)] probe: i64,
     ) -> bool {
         self.report("report_begin", || {
-            let touching = events::touching(surface, channel)?;
+            let touching = events::touching(surface, channel, probe)?;
             let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
             let sample = events::sample(uv, force_n, events::velocity(velocity_m_s), rolling);
             Ok(ContactEvent::begin_with(events::contact(contact)?, touching, sample))

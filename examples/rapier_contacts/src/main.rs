@@ -104,7 +104,7 @@ fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names, Adapter), Box<dyn
         Surface::flat(SIDE_M, SIDE_M)?.material(Material::CERAMIC).body(names.bodies["slab"]).wraps(false);
     names.surfaces.insert("slab".to_owned(), scene.add_surface(slab)?);
     let adapter = Adapter::new(&mut scene)?;
-    names.probes.insert("rigid".to_owned(), adapter.rigid_probe());
+    names.probes.extend(adapter.named_probes("rigid"));
     Ok((scene, renderer, names, adapter))
 }
 

@@ -7,13 +7,16 @@
 //! | `notice` | what a game should know of its things |
 //! | `side` | one of the two: what it is to asperity, and how it moves |
 //! | `pair` | one pair over time: lands, slides, rolls, rests, leaves |
+//! | `face` | how long a thing lies along its stroke, and the probe for that |
 //! | `step` | what of a pair's step follows from mechanics alone |
 
+mod face;
 mod notice;
 mod pair;
 mod side;
 mod step;
 
+pub use face::{FACES_M, Points, Probes};
 pub use notice::{Notice, ODD_GRAVITY_M_S2, ODD_SIZE_M};
 pub use pair::{Doing, Kind, Pair};
 pub use side::{EDGE_RADIUS_M, Motion, Side, Thing, axis_radius_m, lies_across, mobility_per_kg, radius_m};

@@ -1,5 +1,6 @@
 //! One pair of colliders over time: it lands, slides or rolls, rests, and leaves.
 
+use crate::face::Face;
 use crate::step::{QUIET_LANDING_M_S, Solved, Step};
 use asperity::surface::triplanar::TriplanarPath;
 use asperity::{ContactEvent, ContactId, ContactSample, SurfaceId, Touching, UvPlace};
@@ -59,6 +60,7 @@ pub struct Pair {
     path: Option<TriplanarPath>,
     unplaced: Option<usize>,
     resting_steps: u32,
+    face: Face,
 }
 
 impl Pair {
@@ -125,6 +127,13 @@ impl Pair {
         if let Some(radius_m) = step.roll_radius_m(solved, scraped) {
             sample = sample.rolling(radius_m).slipping(f64::from(slip.length()));
         }
+        // One that rests keeps the face that it slid with.
+        let length_m = step.face_m(solved, scraped, path);
+        let turns = path.length() >= REST_M_S && self.face.turns(length_m, self.contact.is_none());
+        if turns && toucher.probe.is_none() && !toucher.is_finger() {
+            // A probe is a contact's for its whole life; the one goes as the other comes.
+            events.extend(self.contact.take().map(ContactEvent::end));
+        }
         if let Some(contact) = self.contact {
             events.push(ContactEvent::moved(contact, sample));
             return;
@@ -134,7 +143,8 @@ impl Pair {
         self.contact = Some(contact);
         let mut touching = Touching::on(surface);
         // A finger is the engine's own probe unless it says otherwise.
-        touching.probe = toucher.probe.or((!toucher.is_finger()).then_some(step.rigid));
+        touching.probe =
+            toucher.probe.or((!toucher.is_finger()).then_some(step.probes.of(self.face.now())));
         (touching.holder, touching.actuator) = (toucher.body, toucher.actuator);
         let sample = ContactSample { closing_m_s: f64::from(closing_m_s.max(0.0)), ..sample };
         events.push(ContactEvent::begin_with(contact, touching, sample));

@@ -1,7 +1,8 @@
 //! Mechanics of a pair's step: which side is scraped, how fast, and the blow of a landing.
 
+use crate::face::{Points, Probes};
 use crate::side::{Side, radius_m};
-use asperity::{Impact, ProbeId};
+use asperity::Impact;
 use glam::Vec3;
 
 /// Slower landings are rest, not impacts, m/s.
@@ -32,6 +33,8 @@ pub struct Solved {
     /// Set where the force is a nominal one, of two that the engine lets pass through each other: a
     /// hand on fixed ground.
     pub is_nominal: bool,
+    /// Its points, in space.
+    pub points: Points,
 }
 
 /// Input of a pair's step.
@@ -40,8 +43,8 @@ pub struct Step<'a> {
     pub sides: [&'a dyn Side; 2],
     /// Their contact; none: nothing presses.
     pub solved: Option<Solved>,
-    /// Probe of things that name none.
-    pub rigid: ProbeId,
+    /// Probes of things that name none.
+    pub probes: Probes,
     /// Length of the step, s.
     pub step_s: f32,
 }
@@ -104,6 +107,12 @@ impl Step<'_> {
     pub(crate) fn roll_radius_m(&self, solved: &Solved, scraped: usize) -> Option<f64> {
         self.sides[1 - scraped].rolls_m(solved.point_m, solved.normal)?;
         Some(self.radius_m(solved))
+    }
+
+    /// Length of the face with which the other one slides, m; 0 where it rolls.
+    pub(crate) fn face_m(&self, solved: &Solved, scraped: usize, path: Vec3) -> f32 {
+        let rolls = self.sides[1 - scraped].rolls_m(solved.point_m, solved.normal).is_some();
+        if rolls { 0.0 } else { solved.points.length_m(path) }
     }
 
     /// The contact of what lies on its side in its middle: along the line the solver's point hops

@@ -22,13 +22,13 @@ mod thing;
 mod vector;
 mod view;
 
-pub use asperity_pairs::{EDGE_RADIUS_M, Kind, NOMINAL_FORCE_N, Notice};
+pub use asperity_pairs::{EDGE_RADIUS_M, FACES_M, Kind, NOMINAL_FORCE_N, Notice};
 pub use notices::Warning;
 pub use thing::{Mapping, Thing};
 pub use view::View;
 
-use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, THING_PROBE};
-use asperity_pairs::{Motion, Pair, Side, Step};
+use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene};
+use asperity_pairs::{Motion, Pair, Probes, Side, Step};
 use notices::Notices;
 use rapier3d::prelude::*;
 use side::ColliderSide;
@@ -65,7 +65,7 @@ pub struct Adapter {
     pairs: BTreeMap<[(u32, u32); 2], Listed>,
     before: HashMap<RigidBodyHandle, Motion>,
     notices: Notices,
-    rigid: ProbeId,
+    probes: Probes,
     next_contact: u64,
 }
 
@@ -78,27 +78,33 @@ struct Listed {
 }
 
 impl Adapter {
-    /// An adapter whose things touch as the scene's new probe, [`THING_PROBE`].
+    /// An adapter whose things touch as new probes of the scene, with a tip or a face
+    /// ([`FACES_M`]); to be made before the surfaces, which get ready for them.
     ///
     /// # Errors
-    /// When the scene has no place for another probe.
+    /// When the scene has no place for other probes.
     pub fn new(scene: &mut Scene) -> Result<Self, AddError> {
-        let rigid = scene.add_probe(THING_PROBE)?;
+        let probes = Probes::add(scene)?;
         Ok(Self {
             things: HashMap::new(),
             pairs: BTreeMap::new(),
             before: HashMap::new(),
             notices: Notices::default(),
-            rigid,
+            probes,
             next_contact: FIRST_CONTACT,
         })
     }
 
-    /// The probe that things touch with unless told otherwise; its name in a recording is the
-    /// game's choice.
+    /// The probe of things that touch with a tip and are not told otherwise; its name in a recording
+    /// is the game's choice.
     #[must_use]
     pub fn rigid_probe(&self) -> ProbeId {
-        self.rigid
+        self.probes.tip
+    }
+
+    /// Each probe that the adapter has added, with a name that begins with `name`.
+    pub fn named_probes(&self, name: &str) -> impl Iterator<Item = (String, ProbeId)> {
+        self.probes.named(name)
     }
 
     /// Says what a collider is; colliders of which nothing is said are not heard. A new thing for a
@@ -146,7 +152,7 @@ impl Adapter {
             let step = Step {
                 sides: [&sides[0] as &dyn Side, &sides[1]],
                 solved: solved::solved(contact, view, before, [first.nominal_n, second.nominal_n]),
-                rigid: self.rigid,
+                probes: self.probes,
                 step_s: view.step_s,
             };
             let key = colliders.map(ColliderHandle::into_raw_parts);

@@ -2,7 +2,7 @@
 
 use crate::vector::told;
 use crate::view::View;
-use asperity_pairs::{Motion, Solved};
+use asperity_pairs::{Motion, Points, Solved};
 use rapier3d::prelude::*;
 
 /// `None` when nothing presses. `before`: how both moved before the step; `nominal_n`: what presses
@@ -16,11 +16,13 @@ pub(crate) fn solved(
     let first = view.colliders.get(pair.collider1)?.position();
     let (mut point_m, mut normal, mut impulse_n_s, mut restitution) =
         (Vector::ZERO, Vector::ZERO, 0.0, 0.0f32);
+    let mut points = Points::default();
     for manifold in pair.solver_manifolds() {
         // A point of a compound is told in the space of its part.
         let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
         for contact in &manifold.points {
             let impulse = pushed_n_s(&contact.data);
+            points.add(told(place * contact.local_p1));
             point_m += place * contact.local_p1 * impulse;
             normal += manifold.data.normal * impulse;
             impulse_n_s += impulse;
@@ -36,7 +38,7 @@ pub(crate) fn solved(
         told(view.gravity * (body.map_or(0.0, |body| body.gravity_scale()) * view.step_s))
     });
     let closing_m_s = Solved::closing_m_s(before, gained_m_s, point_m, normal);
-    Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s, is_nominal: false })
+    Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s, is_nominal: false, points })
 }
 
 /// Two that the solver never pushes apart, because nothing moves either, one of them a hand or a
@@ -50,9 +52,11 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
     }
     let first = view.colliders.get(pair.collider1)?.position();
     let (mut point_m, mut normal, mut count) = (Vector::ZERO, Vector::ZERO, 0.0);
+    let mut points = Points::default();
     for manifold in manifolds(pair) {
         let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
         for contact in manifold.points.iter().filter(|contact| contact.dist <= 0.0) {
+            points.add(told(place * contact.local_p1));
             point_m += place * contact.local_p1;
             normal += place.rotation * manifold.local_n1;
             count += 1.0;
@@ -65,6 +69,7 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
         restitution: 0.0,
         closing_m_s: 0.0,
         is_nominal: true,
+        points,
     })
 }
 
