@@ -136,7 +136,7 @@ pub fn render_edited<T: Tap>(
 ) -> Result<Render, LogError> {
     let (rate, inner_rate) = (renderer.sample_rate_hz(), renderer.inner_rate_hz());
     let every = (inner_rate / rate).round() as u64;
-    let frames = ((log.end_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
+    let frames = ((log.heard_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
     // What is misnamed is told before anything is rendered, unless an edit may bring it.
     log.check_names(names)?;
     let mut names = names.clone();
@@ -146,12 +146,12 @@ pub fn render_edited<T: Tap>(
         if take.stopped {
             break;
         }
-        let sample = Stamp::at(t * inner_rate).sample() / every;
+        let sample = Stamp::at(take.scene.clock.sample_at(*t)).sample() / every;
         if let LogEvent::Edit(edit) = event {
             // It was made at this sample, behind what was reported before.
-            take.render_to(sample.min(take.end), tap);
+            take.render_to(sample, tap);
             edits
-                .make(edit, &mut take.scene, &mut names)
+                .make(edit, &mut take.scene, &mut names, *t)
                 .map_err(|problem| LogError::CannotEdit { t: *t, problem })?;
             continue;
         }
@@ -162,7 +162,7 @@ pub fn render_edited<T: Tap>(
             take.first_refused.get_or_insert((*t, refused));
         }
     }
-    take.render_to(take.end, tap);
+    take.render_to(u64::MAX, tap);
     if take.stopped { Err(LogError::Stopped) } else { Ok(take.finish()) }
 }
 
@@ -206,20 +206,30 @@ impl Take {
     /// Where the queue is flushed does not change the result, because every event carries its
     /// sample.
     fn make_room<T: Tap>(&mut self, next_event: u64, tap: &mut T) {
-        while !self.stopped && self.renderer.position() + self.block_frames as u64 <= next_event.min(self.end)
-        {
+        let fits = |take: &Self| {
+            let ahead = next_event.saturating_sub(take.renderer.game_position()) as usize;
+            take.renderer.frames_within(ahead).min(take.left()) >= take.block_frames
+        };
+        while !self.stopped && fits(self) {
             self.render_block(self.block_frames, tap);
         }
         if self.scene.is_filling() {
-            let ahead = next_event.saturating_sub(self.renderer.position()).max(1);
-            self.render_to((self.renderer.position() + ahead).min(self.end), tap);
+            self.render_to(next_event.max(self.renderer.game_position() + 1), tap);
         }
     }
 
-    fn render_to<T: Tap>(&mut self, end: u64, tap: &mut T) {
-        while !self.stopped && self.renderer.position() < end {
-            let left = (end - self.renderer.position()) as usize;
-            self.render_block(left.min(self.block_frames), tap);
+    /// Samples that are left of the render.
+    fn left(&self) -> usize {
+        (self.end - self.renderer.position()) as usize
+    }
+
+    /// Renders until the game's time is there, or the render ends.
+    fn render_to<T: Tap>(&mut self, game_sample: u64, tap: &mut T) {
+        while !self.stopped && self.left() > 0 && self.renderer.game_position() < game_sample {
+            let ahead = game_sample - self.renderer.game_position();
+            let ahead = ahead.min(4 * self.block_frames as u64 + 512) as usize;
+            let frames = self.renderer.frames_within(ahead).max(1);
+            self.render_block(frames.min(self.block_frames).min(self.left()), tap);
         }
     }
 

@@ -70,6 +70,7 @@ mod realtime;
 mod recordings;
 mod reports_of_games;
 mod residual;
+mod rollback;
 mod rolling;
 mod sand_at_rest;
 mod scaled_bodies;
@@ -82,6 +83,7 @@ mod six_plates;
 mod slanting;
 #[path = "common/sliding.rs"]
 mod sliding;
+mod slow_motion;
 mod soft_ground;
 mod sound_grows;
 mod stability;

@@ -217,7 +217,7 @@ fn slow_motion_with_an_exact_clock_strokes_as_slowly_as_it_says() {
     let speed = |scale: f64| {
         let mut game = Game::new(64);
         game.strokes(30);
-        game.scene.set_time_scale(scale).unwrap();
+        game.scene.set_time_scale(scale, false).unwrap();
         let (mut until, mut t) = (game.audio.len(), game.time_s());
         let began = until;
         for _ in 0..30 {

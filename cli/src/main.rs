@@ -8,7 +8,7 @@
 //! | [`output`] | files that appear complete, together, or not at all, and never over an input |
 //! | [`paths`] | which arguments are read and which written |
 //! | [`progress`] | a bar on a terminal, after a second, and nothing in a pipe |
-//! | [`wav`], [`csv`] | samples and tables on disk |
+//! | [`wav`], [`csv`], [`columns`] | samples and tables on disk |
 //!
 //! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options:
 //! &Options) -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
@@ -22,8 +22,10 @@ mod batch;
 #[path = "no_batch.rs"]
 mod batch;
 mod bench_scene;
+mod columns;
 mod csv;
 mod demo;
+mod device;
 mod error;
 mod evidence;
 mod export;
@@ -72,6 +74,7 @@ enum Verb {
     Fit(Box<fit::Options>),
     Modes(Box<modes::Options>),
     Haptic(Box<haptic::Options>),
+    Device(device::Options),
     Import(import::Options),
     Export(export::Options),
     Render(render::Options),
@@ -96,6 +99,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Fit(options) => fit::run(&options),
         Verb::Modes(options) => modes::run(&options),
         Verb::Haptic(options) => haptic::run(&options),
+        Verb::Device(options) => device::run(&options),
         Verb::Import(options) => import::run(&options),
         Verb::Export(options) => export::run(&options),
         Verb::Render(options) => render::run(&options),

@@ -55,8 +55,14 @@ const WRITTEN: [(&str, Option<&str>); 8] = [
 ];
 
 /// Verbs whose `--output` is one file of a kind that its name must say.
-const OUTPUTS: [(&str, &str); 5] =
-    [("fit", "json"), ("modes", "json"), ("metamer", "png"), ("from-normals", "png"), ("brownian", "png")];
+const OUTPUTS: [(&str, &str); 6] = [
+    ("device", "toml"),
+    ("fit", "json"),
+    ("modes", "json"),
+    ("metamer", "png"),
+    ("from-normals", "png"),
+    ("brownian", "png"),
+];
 
 /// Hands over what the command line reads and checks what it writes.
 ///

@@ -6,6 +6,7 @@ mod brownian_force;
 mod chaotic;
 mod damping_from_recordings;
 mod demo;
+mod device;
 mod export;
 mod fit;
 mod from_stroke;

@@ -107,6 +107,8 @@ pub const SLIP_SPEED_M_S: Range = Range::new(1e-9, 10.0, "1e-9 to 10 m/s");
 pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
 /// Game seconds a second of audio.
 pub const TIME_SCALE: Range = Range::new(0.01, 100.0, "0.01 to 100");
+/// Game seconds a second of audio where pitch bends with it.
+pub const BENT_TIME_SCALE: Range = Range::new(0.1, 2.0, "0.1 to 2 with bend_pitch");
 /// Game time of a report with a live clock, s.
 pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
 
@@ -355,6 +357,7 @@ mod tests {
             OCTAVE_DB,
             SIDE_M,
             TIME_SCALE,
+            BENT_TIME_SCALE,
             PLACE_M,
             AXIS,
             ROUGHNESS,

@@ -13,6 +13,7 @@ mod outputs;
 mod pickups;
 mod render_pool;
 mod tails;
+pub(crate) mod tape;
 mod voices;
 
 use crate::audio::blows::Blows;
@@ -48,10 +49,14 @@ use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use tails::TAILS;
+use tape::Tape;
 
 /// The audio half of an engine.
 pub struct Renderer {
     position: u64,
+    /// Samples that have left.
+    given: u64,
+    tape: Tape,
     /// Resets of the game's time so far.
     resets: u64,
     /// Threads read it while they render; between two stretches nobody else holds it.
@@ -126,6 +131,8 @@ impl Renderer {
             crew.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
         Ok(Self {
             position: 0,
+            given: 0,
+            tape: Tape::new(config.actuators.len() + config.audio.len() + config.pickups.len(), 0),
             resets: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
@@ -212,7 +219,23 @@ impl Renderer {
     /// Index of the next sample to be rendered.
     #[must_use]
     pub fn position(&self) -> u64 {
+        self.given
+    }
+
+    /// Index of the next sample in the game's time: it falls behind [`position`](Self::position)
+    /// where pitch bends down.
+    pub(crate) fn game_position(&self) -> u64 {
         self.position / self.shared.inner.every as u64
+    }
+
+    /// Samples that surely leave before `ahead` more are rendered in the game's time.
+    pub(crate) fn frames_within(&self, ahead: usize) -> usize {
+        if !self.tape.runs() {
+            return ahead;
+        }
+        let fits = |frames: &usize| self.tape.most_written(*frames) <= ahead;
+        let guess = (ahead as f64 / self.tape.scale().max(1.0)) as usize;
+        [guess, guess.saturating_sub(64)].into_iter().find(fits).unwrap_or(0)
     }
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the
@@ -304,11 +327,43 @@ impl Renderer {
         let frames = if frames == usize::MAX { 0 } else { frames };
         self.clear_what_nobody_writes(frames, haptic, audio);
         clear_beyond(pickups, |index| if index < self.pickups.len() { frames } else { 0 });
-        let frames = frames * self.shared.inner.every;
+        let split = [self.channels.len(), self.channels.len() + self.buses.len()];
         let mut done = 0;
         while done < frames {
+            let wanted = if self.tape.runs() { self.tape.missing() } else { frames - done };
+            if wanted > 0 {
+                let ran = self.tape.runs();
+                let n = self.render_on(done, wanted.min(frames - done), haptic, audio, pickups, tap);
+                self.tape.write((done, n), haptic, audio, pickups, split, ran);
+                done += if ran { 0 } else { n };
+            } else {
+                self.tape.read(done, haptic, audio, pickups, split);
+                done += 1;
+            }
+        }
+        self.given += frames as u64;
+        self.counters.position.store(self.position, Relaxed);
+    }
+
+    /// Renders `frames` samples in the game's time, into the outputs from `at` on; as many as were
+    /// rendered, fewer where the tape begins to run.
+    fn render_on<T: Tap>(
+        &mut self,
+        at: usize,
+        frames: usize,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+        pickups: &mut [&mut [f32]],
+        tap: &mut T,
+    ) -> usize {
+        let every = self.shared.inner.every;
+        let (mut done, end, ran) = (at * every, (at + frames) * every, self.tape.runs());
+        while done < end {
             self.apply_due();
-            let n = self.stretch(frames - done);
+            if self.tape.runs() && !ran && done.is_multiple_of(every) {
+                break;
+            }
+            let n = self.stretch(end - done);
             self.render_contacts(n, tap);
             if self.outlets.are_open() {
                 let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
@@ -324,7 +379,7 @@ impl Renderer {
                 self.tidy();
             }
         }
-        self.counters.position.store(self.position, Relaxed);
+        done / every - at
     }
 
     /// Results of the surfaces' sources, at the end of a render.

@@ -11,6 +11,8 @@
 //! thermal_time_s = 5.0
 //! [source]                       # where each number comes from; say so when it is assumed
 //! resonance_hz = "data sheet"
+//! [error]                        # standard error of each number, for people; may be missing
+//! resonance_hz = 0.4
 //! ```
 
 use super::FileError;
@@ -77,6 +79,8 @@ struct Written {
     thermal_time_s: f64,
     #[serde(default)]
     source: BTreeMap<String, String>,
+    #[serde(default, rename = "error")]
+    _error: BTreeMap<String, serde::de::IgnoredAny>,
 }
 
 /// The profiles that ship with the engine, by name.

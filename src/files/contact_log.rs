@@ -283,6 +283,21 @@ impl ContactLog {
         Ok(())
     }
 
+    /// Time of the last event on the audio's time line, s: that of the log but for its time scales.
+    #[must_use]
+    pub fn heard_s(&self) -> f64 {
+        let (mut heard_s, mut before_s, mut scale) = (0.0, 0.0, 1.0);
+        for LogLine { t, event } in &self.lines {
+            heard_s += (t - before_s) / scale;
+            before_s = *t;
+            if let LogEvent::Edit(LogEdit::TimeScale { scale: to, .. } | LogEdit::Pitch { pitch: to }) = event
+            {
+                scale = to.clamp(0.01, 100.0);
+            }
+        }
+        heard_s
+    }
+
     /// Time of the last event, s; 0 for an empty log.
     #[must_use]
     pub fn end_s(&self) -> f64 {

@@ -157,6 +157,26 @@ impl Clock {
         }
     }
 
+    /// Sample of a game time as things stand; nothing follows from asking.
+    pub(crate) fn sample_at(&self, time_s: f64) -> f64 {
+        match &self.mapping {
+            Mapping::Exact(zero, pace) => time_s / pace * self.sample_rate_hz + zero.unwrap_or(0.0),
+            Mapping::Live(live) => live.sample_at(time_s).unwrap_or_else(|| self.last.samples()),
+        }
+    }
+
+    /// Game time of the newest report, s.
+    pub(crate) fn newest_s(&self) -> f64 {
+        self.newest.0
+    }
+
+    /// Stamp of a game time before the newest, told by a game that has gone back: the mapping stays
+    /// what it is.
+    pub(crate) fn stamp_back(&mut self, time_s: f64) -> Stamped {
+        self.last = Stamp::at(self.sample_at(time_s)).max(self.last);
+        Stamped { stamp: self.last, jumped: false, repaced: false }
+    }
+
     /// From now on: the next stamp holds at the next sample, `position`.
     pub(crate) fn reset(&mut self, position: u64) {
         match &mut self.mapping {

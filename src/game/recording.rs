@@ -27,6 +27,8 @@ struct Waiting {
     epoch: u64,
     /// Position of the audio then, s: what was late already waits for the next block all the same.
     told_s: f64,
+    /// Of a strike with a name; 0 = none.
+    ticket: u32,
 }
 
 /// Destination of a recording.
@@ -95,6 +97,11 @@ impl Recording {
         }
     }
 
+    /// A strike with a name that waits never happens.
+    pub(crate) fn withdraw(&mut self, ticket: u32) {
+        self.waiting.retain(|waits| waits.ticket != ticket);
+    }
+
     /// Impacts that wait never happen.
     pub(crate) fn drop_strikes(&mut self) {
         self.waiting.retain(|waits| !is_strike(&waits.line));
@@ -118,12 +125,18 @@ impl Recording {
     /// Notes an edit that the engine makes at `time_s`.
     pub(crate) fn note_edit(&mut self, time_s: f64, edit: LogEdit) {
         let line = LogLine { t: time_s, event: LogEvent::Edit(edit) };
-        self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0 });
+        self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0, ticket: 0 });
     }
 
     /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and
     /// when, s of audio.
-    pub(crate) fn note(&mut self, time_s: f64, (epoch, told_s): (u64, f64), event: &ContactEvent) {
+    pub(crate) fn note(
+        &mut self,
+        time_s: f64,
+        (epoch, told_s): (u64, f64),
+        event: &ContactEvent,
+        ticket: u32,
+    ) {
         let event = match *event {
             ContactEvent::Begin { contact, touching, sample } => LogEvent::Begin {
                 contact: contact.0,
@@ -157,7 +170,7 @@ impl Recording {
             // Game time was tied back: what lay further ahead comes now.
             self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(told_s));
         }
-        self.waiting.push_back(Waiting { line: LogLine { t: time_s, event }, epoch, told_s });
+        self.waiting.push_back(Waiting { line: LogLine { t: time_s, event }, epoch, told_s, ticket });
     }
 
     /// Ends the recording: what is in memory, or how many lines were written.

@@ -4,6 +4,7 @@
 
 mod bodies;
 mod levelled;
+mod named;
 mod pickups;
 mod ports;
 mod quiet;
@@ -12,6 +13,7 @@ mod reports;
 mod spin;
 mod touched;
 
+use self::named::Named;
 use self::spin::Spin;
 use crate::files::contact_log::LogEdit;
 use crate::game::clipping::Strongest;
@@ -102,6 +104,10 @@ pub struct Scene {
     /// The newest impact that sounded on each body that has a least time: when, in samples, and its
     /// impulse.
     sounded: HashMap<BodyId, (f64, f64)>,
+    /// Speed and pitch of all that leaves.
+    pitch: f64,
+    /// Strikes with a name.
+    named: Named,
     /// Bodies that have rung out, the newest last: the next of the same kind goes out at once.
     pub(crate) rested: Vec<Made>,
 }
@@ -188,6 +194,8 @@ impl Scene {
             moved: HashMap::new(),
             sounded: HashMap::new(),
             rested: Vec::new(),
+            named: Named::default(),
+            pitch: 1.0,
         }
     }
 

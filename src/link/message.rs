@@ -31,6 +31,8 @@ pub(crate) enum Message {
         holder: Option<usize>,
         felt: Option<Felt>,
         pulse: HertzPulse,
+        /// Of a strike with a name; 0 = it has none.
+        ticket: u32,
     },
     /// A body moves as a whole, over so many samples from what was told before; how much faster it
     /// turns, rad/s².
@@ -54,6 +56,8 @@ pub(crate) enum Message {
     SetBodySend { slot: usize, bus: usize, gain: f64 },
     /// A body is louder or softer from now on.
     SetBodyGain { slot: usize, gain: f64 },
+    /// Everything that leaves sounds at this speed and pitch from now on.
+    SetPitch(f64),
     /// Everything that leaves fades to nothing, or comes back.
     Mute(bool),
     /// Mark that also lets contacts wait for their next report.

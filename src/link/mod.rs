@@ -7,3 +7,4 @@ pub(crate) mod ring;
 pub(crate) mod stats;
 pub(crate) mod tap;
 pub(crate) mod threads;
+pub(crate) mod tickets;

@@ -1,5 +1,6 @@
 //! Statistics of both halves, readable from the game thread at any moment.
 
+use crate::link::tickets::Tickets;
 use crate::model::bus::BusLevels;
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
@@ -30,6 +31,8 @@ macro_rules! counters {
             pub(crate) epoch: AtomicU64,
             /// Strikes of an epoch before this have come too late.
             pub(crate) stale_before: AtomicU64,
+            /// Strikes that have a name.
+            pub(crate) tickets: Tickets,
         }
 
         impl Counters {
@@ -106,6 +109,11 @@ counters! {
     /// Impacts dropped because they came sooner after one that was as strong than the least time of
     /// their body ([`Body::least_time_s`](crate::Body::least_time_s)).
     too_soon,
+    /// Strikes with a name that were reported again after they had sounded, or as they wait: each
+    /// sounds once.
+    repeated,
+    /// Strikes with a name that were withdrawn, or replaced by a newer report, before their time.
+    withdrawn,
     /// Bodies that were removed or replaced and faded before they had rung out, because more than
     /// 64 of them rang.
     given_way,

@@ -33,12 +33,13 @@ impl Default for Edits<'_> {
 }
 
 impl Edits<'_> {
-    /// Makes one edit; new things get their names.
+    /// Makes one edit of game time `time_s`; new things get their names.
     pub(crate) fn make(
         &mut self,
         edit: &LogEdit,
         scene: &mut Scene,
         names: &mut Names,
+        time_s: f64,
     ) -> Result<(), FileError> {
         match edit {
             LogEdit::AddBody { body, is } => {
@@ -59,6 +60,8 @@ impl Edits<'_> {
             LogEdit::BodyGain { body, gain } => scene.set_body_gain(known_body(names, body)?, *gain),
             LogEdit::Mute { muted } => scene.set_muted(*muted),
             LogEdit::Pause { paused } => scene.set_paused(*paused),
+            LogEdit::TimeScale { scale, bend_pitch } => scene.scale_time(time_s, *scale, *bend_pitch),
+            LogEdit::Pitch { pitch } => scene.set_pitch(*pitch),
             LogEdit::FadeAll => scene.fade_all(),
             LogEdit::RemoveBody { body } => scene.remove_body(known_body(names, body)?),
             LogEdit::AddProbe { probe, is } => scene.add_probe(*is).map(|id| {

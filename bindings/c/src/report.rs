@@ -78,5 +78,44 @@ pub unsafe extern "C" fn asp_reset(scene: *mut asp_scene) -> i32 {
 /// clock.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_set_time_scale(scene: *mut asp_scene, scale: f64) -> i32 {
-    enter(|| SCENES.hold(scene as usize)?.scene.set_time_scale(scale).map_err(|error| refused(&error)))
+    enter(|| SCENES.hold(scene as usize)?.scene.set_time_scale(scale, false).map_err(|error| refused(&error)))
+}
+
+/// Sets the game seconds a second of audio, 0.1 to 2, and lets all that is heard and felt bend with
+/// it: at 0.5 a bell of 800 Hz rings at 400 Hz, twice as long. For both clocks; 1 ends it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_bend_time(scene: *mut asp_scene, scale: f64) -> i32 {
+    enter(|| SCENES.hold(scene as usize)?.scene.set_time_scale(scale, true).map_err(|error| refused(&error)))
+}
+
+/// Reports a strike (an event of kind ASP_IMPACT, of `size` bytes) under a name, for games that
+/// predict and roll back: reported again, also for a time that has gone by, it still sounds once,
+/// and while it waits the newer report counts. Names are kept for the next 1024.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_report_named(
+    scene: *mut asp_scene,
+    time_s: f64,
+    name: u64,
+    event: *const asp_event,
+    size: u32,
+) -> i32 {
+    enter(|| {
+        let asperity::ContactEvent::Impact(impact) = sized::read_within(event, size, "event")?.engines()?
+        else {
+            return Err(Failure::new(ASP_BAD_ARGUMENT, "kind: is no strike; must be ASP_IMPACT"));
+        };
+        let mut half = SCENES.hold(scene as usize)?;
+        half.scene.report_named(time_s, name, impact).map_err(|error| refusal(0, &error.reason))
+    })
+}
+
+/// Takes a strike with a name back: `waited` is 1 where it waited and does not sound, 0 where it
+/// has sounded already or is not known.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_withdraw(scene: *mut asp_scene, name: u64, waited: *mut u32) -> i32 {
+    enter(|| {
+        let waited = out(waited, "waited")?;
+        *waited = u32::from(SCENES.hold(scene as usize)?.scene.withdraw(name));
+        Ok(())
+    })
 }

@@ -275,7 +275,7 @@ static void rest(void) {
     case 9: told(asp_set_paused(scene(), rnd(2))); break;
     case 10: told(asp_fade_all(scene())); break;
     case 11: told(asp_reset(scene())); break;
-    case 12: told(asp_set_time_scale(scene(), number())); break;
+    case 12: told(asp_set_time_scale(scene(), number())), told(asp_bend_time(scene(), number())); break;
     case 13: stats.struct_size = size_of(sizeof stats); told(asp_get_stats(scene(), &stats)); break;
     case 14: told((rnd(2) ? asp_why_silent : asp_why_clipped)(scene(), words, rnd(201))); break;
     case 15: told(asp_bus_peaks(scene(), peaks, rnd(70) % 65)); break;

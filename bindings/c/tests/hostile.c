@@ -136,6 +136,10 @@ static void nulls(void) {
     REFUSED(asp_sink_picture(NULL, NULL), ASP_BAD_ARGUMENT, "sink");
     REFUSED(asp_reset(NULL), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_time_scale(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_bend_time(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_report_named(scene, 0, 1, NULL, sizeof event), ASP_BAD_ARGUMENT, "event");
+    REFUSED(asp_withdraw(scene, 1, NULL), ASP_BAD_ARGUMENT, "waited");
+    REFUSED(asp_withdraw(NULL, 1, &number), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_haptic_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_bus_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
     double level;
@@ -319,6 +323,17 @@ static void ids_and_numbers(void) {
     loud.stock = "bar", loud.size_m = 0.2, loud.strike_gain = 1e9;
     REFUSED(asp_add_body(scene, &loud, &id), ASP_REFUSED, "strike_gain");
     REFUSED(asp_set_time_scale(scene, -1), ASP_REFUSED, "time_scale");
+    REFUSED(asp_bend_time(scene, 3), ASP_REFUSED, "time_scale");
+    asp_event blow;
+    asp_init_event(&blow, sizeof blow);
+    blow.kind = ASP_END;
+    REFUSED(asp_report_named(scene, 0, 5, &blow, sizeof blow), ASP_BAD_ARGUMENT, "kind");
+    blow.kind = ASP_IMPACT, blow.body = body;
+    uint32_t waited;
+    MUST(asp_report_named(scene, 1, 5, &blow, sizeof blow) == ASP_OK);
+    MUST(asp_report_named(scene, 1, 5, &blow, sizeof blow) == ASP_OK);
+    MUST(asp_withdraw(scene, 5, &waited) == ASP_OK && waited == 1);
+    MUST(asp_withdraw(scene, 5, &waited) == ASP_OK && waited == 0);
     REFUSED(asp_set_sample_rate(scene, renderer, NAN), ASP_REFUSED, "sample_rate_hz");
     asp_body wrong;
     asp_body_init(&wrong);

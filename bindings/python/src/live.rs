@@ -9,7 +9,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::load::Overrides;
 use asperity::surface::sand::SandThread;
 use asperity::surface::sand::SandWorker;
-use asperity::{ClockMode, Engine, Scene};
+use asperity::{ClockMode, ContactEvent, Engine, Scene};
 use numpy::{PyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -118,6 +118,30 @@ impl LiveScene {
                 .map_err(|error| refused(format!("t = {} s: {error}", line.t)))?;
         }
         Ok(())
+    }
+
+    /// Reports the strike of a line under a name.
+    fn report_named(&self, name: u64, text: &str) -> PyResult<()> {
+        let mut game = held(&self.inner)?;
+        let log = ContactLog::parse(text, "event").map_err(refused)?;
+        log.check_actuators(game.scene.config().actuators.len()).map_err(refused)?;
+        for line in &log.lines {
+            let ContactEvent::Impact(impact) = line.event.resolve(&game.names).map_err(refused)? else {
+                return Err(refused("event: is no strike; only an \"impact\" takes a name"));
+            };
+            game.scene.report_named(line.t, name, impact).map_err(refused)?;
+        }
+        Ok(())
+    }
+
+    /// Takes a strike with a name back.
+    fn withdraw(&self, name: u64) -> PyResult<bool> {
+        Ok(held(&self.inner)?.scene.withdraw(name))
+    }
+
+    /// Game seconds a second of audio.
+    fn set_time_scale(&self, scale: f64, bend_pitch: bool) -> PyResult<()> {
+        held(&self.inner)?.scene.set_time_scale(scale, bend_pitch).map_err(refused)
     }
 
     /// Statistics of the engine so far, as JSON.

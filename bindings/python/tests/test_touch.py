@@ -347,3 +347,27 @@ def test_a_tip_says_what_it_needs():
         tip.step(0, (0, 0, 0))
     with pytest.raises(ValueError, match="position_m"):
         tip.step(0.01, (0, float("nan"), 0))
+
+
+def test_a_bell_in_slow_motion_rings_lower_and_a_strike_with_a_name_once(tmp_path):
+    mode = {"frequency_hz": 800.0, "decay_per_s": 3.0, "amplitude": 0.3, "phase_rad": 0.0}
+    modes = {"format": "asperity.modes", "version": 1, "source": "test", "impulse_n_s": 0.01, "modes": [mode]}
+    (tmp_path / "bell.modes.json").write_text(json.dumps(modes))
+    (tmp_path / "scene.toml").write_text('[[body]]\nname = "bell"\nmodes = "bell.modes.json"\n')
+
+    def rings(scale: float) -> tuple[float, dict]:
+        scene = asp.Scene(tmp_path / "scene.toml", sr=48_000, clock="exact")
+        strike = dict(body="bell", speed_m_s=1.0, mass_kg=0.004, radius_m=0.005)
+        for _ in range(3):
+            scene.impact_named(0.0, 7, **strike)
+        scene.impact_named(5.0, 8, **strike)
+        assert scene.withdraw(8) and not scene.withdraw(8)
+        scene.set_time_scale(scale, bend_pitch=True)
+        audio, _ = scene.renderer.render(48_000)
+        tail = audio[8_000:]
+        rises = np.flatnonzero((tail[:-1] < 0) & (tail[1:] >= 0))
+        return (len(rises) - 1) / (rises[-1] - rises[0]) * 48_000, scene.stats
+
+    for scale in (0.5, 1.0, 1.5):
+        hz, stats = rings(scale)
+        assert hz == pytest.approx(800 * scale, rel=1e-3) and stats["impacts"] == 1

@@ -164,7 +164,7 @@ pub extern "C" fn asp_do(what: u32, index: u32, value: f64) -> u32 {
                 let channel = u16::try_from(index).map_err(|_| format!("channel: {index} is none"))?;
                 scene.set_haptic_gain(ChannelId(channel), value)
             }
-            TIME_SCALE => scene.set_time_scale(value),
+            TIME_SCALE => scene.set_time_scale(value, false),
             other => return Err(format!("what: {other} is refused; must be 0 to {TIME_SCALE}")),
         };
         done.map_err(|error| error.to_string())

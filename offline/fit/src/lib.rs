@@ -15,6 +15,7 @@
 //! | `search` | residual → bands, poles in them, candidates for modes |
 //! | `ways` | sound → partials: as a sum of modes, a push and a sum of modes, or from the tail to the attack |
 //! | [`body`] | partials → what the engine will play, and what that leaves of the recording |
+//! | [`device`] | a recorded sweep → the profile of an actuator |
 //! | [`after`] | modes → other sizes and materials, several strikes of one body, tables |
 //!
 //! On real recordings: `cargo run --release -p asperity-fit --example recordings` (60 modes against
@@ -22,6 +23,7 @@
 
 pub mod after;
 pub mod body;
+pub mod device;
 mod noise;
 mod options;
 pub mod proof;

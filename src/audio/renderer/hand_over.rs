@@ -3,6 +3,7 @@
 
 use super::Renderer;
 use super::contacts::SilentContact;
+use super::tape::Tape;
 use crate::audio::voice::VoiceState;
 use crate::link::message::Message;
 use crate::link::stats::Counters;
@@ -25,7 +26,10 @@ pub(crate) struct HandedOver {
     /// Samples rendered, at the old rate inside.
     position: u64,
     rate_hz: f64,
+    outer_hz: f64,
     resets: u64,
+    given: u64,
+    scale: f64,
 }
 
 impl Renderer {
@@ -50,7 +54,10 @@ impl Renderer {
             paused: self.paused,
             position: self.position,
             rate_hz: self.shared.sample_rate_hz,
+            outer_hz: self.sample_rate_hz(),
             resets: self.resets,
+            given: self.given,
+            scale: self.tape.scale(),
         }
     }
 
@@ -61,6 +68,10 @@ impl Renderer {
         self.position = (old.position as f64 * ratio / every as f64).round() as u64 * every;
         self.counters.position.store(self.position, Relaxed);
         self.resets = old.resets;
+        self.given = (old.given as f64 * self.sample_rate_hz() / old.outer_hz).round() as u64;
+        let channels = self.channels.len() + self.buses.len() + self.pickups.len();
+        self.tape = Tape::new(channels, self.game_position());
+        self.tape.set_scale(old.scale);
         (self.muted, self.paused) = (old.muted, old.paused);
         self.silent.extend(old.contacts.into_iter().take(self.max_contacts));
         for (channel, control) in self.channels.iter_mut().zip(old.haptic) {
@@ -74,9 +85,9 @@ impl Renderer {
                 Message::Event { stamp, epoch, event, place } => {
                     Message::Event { stamp: at_rate(stamp), epoch, event, place }
                 }
-                Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse } => {
+                Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse, ticket } => {
                     let stamp = at_rate(stamp);
-                    Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse }
+                    Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse, ticket }
                 }
                 other => other,
             })

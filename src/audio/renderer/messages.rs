@@ -58,6 +58,11 @@ impl Renderer {
     }
 
     pub(super) fn apply(&mut self, message: Message) {
+        if let Message::Strike { ticket, .. } = &message
+            && !self.counters.tickets.take(*ticket)
+        {
+            return Counters::add(&self.counters.withdrawn, 1);
+        }
         match message {
             Message::Reset => self.resets += 1,
             // It waited for a time that has ended.
@@ -81,7 +86,7 @@ impl Renderer {
             Message::Strike { epoch, .. } if epoch < self.counters.stale_before.load(Relaxed) => {
                 Counters::add(&self.counters.stale, 1);
             }
-            Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse } => {
+            Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse, ticket: _ } => {
                 let stamp = turn(&self.counters, self.position, stamp, epoch);
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
@@ -130,6 +135,7 @@ impl Renderer {
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
             Message::SetBodySend { slot, bus, gain } => self.bodies[slot].send_to(bus, gain),
             Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::SetPitch(scale) => self.tape.set_scale(scale),
             Message::Mute(muted) => self.muted = muted,
             Message::Pause(paused) => {
                 self.paused = paused;

@@ -69,6 +69,19 @@ pub enum LogEdit {
         /// True where it stands still.
         paused: bool,
     },
+    /// The game runs in slow motion or fast from `t` on; `t` of later lines stays the game's time.
+    TimeScale {
+        /// Game seconds a second of audio.
+        scale: f64,
+        /// True where pitch bends with it; missing: false.
+        #[serde(default)]
+        bend_pitch: bool,
+    },
+    /// All that leaves sounds at this speed and pitch: what recordings hold of a bent time scale.
+    Pitch {
+        /// Speed and pitch.
+        pitch: f64,
+    },
     /// Every contact ends, and what rings is damped.
     FadeAll,
     /// A body goes.

@@ -147,6 +147,8 @@ const EVENTS: &[Event] = &[
     edit("body_gain", &[("body", Holds::Any), ("gain", Holds::Any)]),
     edit("mute", &[("muted", Holds::Any)]),
     edit("pause", &[("paused", Holds::Any)]),
+    edit("time_scale", &[("scale", Holds::Number), ("bend_pitch", Holds::Any)]),
+    edit("pitch", &[("pitch", Holds::Number)]),
     edit("fade_all", &[]),
     edit("add_probe", &[("probe", Holds::Any), ("is", Holds::Any)]),
     edit("add_surface", SURFACE),

@@ -167,6 +167,11 @@ impl Live {
         Followed { sample, jumped, repaced }
     }
 
+    /// Sample of a game time; none before the first.
+    pub fn sample_at(&self, time_s: f64) -> Option<f64> {
+        self.tied.as_ref().map(|tie| tie.sample + (time_s - tie.time_s) * self.samples_per_s())
+    }
+
     fn samples_per_s(&self) -> f64 {
         self.sample_rate_hz / self.pace
     }

@@ -115,11 +115,34 @@ impl Scene {
     /// for the exact clock; a live one finds the pace by itself. Contacts move slower by as much;
     /// forces and blows stay what they are.
     ///
+    /// With `bend_pitch` all that leaves is a tape that runs at that speed: a bell that rings at
+    /// 800 Hz rings at 400 Hz, twice as long, at scale 0.5, and so does what is felt. Ports go on in
+    /// the game's time. It is for both clocks.
+    ///
     /// # Errors
-    /// When the scale is not in 0.01–100.
-    pub fn set_time_scale(&mut self, scale: f64) -> Result<(), AddError> {
-        let scale = within("time_scale", scale, limits::TIME_SCALE)?;
-        self.clock.set_pace(scale, self.last_time_s.max(0.0));
+    /// When the scale is not in 0.01–100, with `bend_pitch` not in 0.1–2, or the queue is full.
+    pub fn set_time_scale(&mut self, scale: f64, bend_pitch: bool) -> Result<(), AddError> {
+        self.scale_time(self.last_time_s.max(0.0), scale, bend_pitch)
+    }
+
+    /// [`set_time_scale`](Self::set_time_scale) from a game time on.
+    pub(crate) fn scale_time(&mut self, since_s: f64, scale: f64, bend_pitch: bool) -> Result<(), AddError> {
+        let range = if bend_pitch { limits::BENT_TIME_SCALE } else { limits::TIME_SCALE };
+        let scale = within("time_scale", scale, range)?;
+        let (pace, pitch) = if bend_pitch { (1.0, scale) } else { (scale, 1.0) };
+        if pitch != self.pitch {
+            self.set_pitch(pitch)?;
+        }
+        self.clock.set_pace(pace, since_s);
+        Ok(())
+    }
+
+    /// Speed and pitch of all that leaves.
+    pub(crate) fn set_pitch(&mut self, pitch: f64) -> Result<(), AddError> {
+        let pitch = within("pitch", pitch, limits::BENT_TIME_SCALE)?;
+        self.send(Message::SetPitch(pitch))?;
+        self.pitch = pitch;
+        self.note(|_| LogEdit::Pitch { pitch });
         Ok(())
     }
 }

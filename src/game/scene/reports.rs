@@ -34,7 +34,18 @@ impl Scene {
         reason = "the event is handed back whole, without a box on the game thread"
     )]
     pub fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), ReportError> {
-        self.try_report(time_s, event).map_err(|reason| {
+        self.report_with(time_s, event, 0)
+    }
+
+    /// Reports a strike with a ticket; 0 = any event without one.
+    #[expect(clippy::result_large_err, reason = "as above")]
+    pub(super) fn report_with(
+        &mut self,
+        time_s: f64,
+        event: ContactEvent,
+        ticket: u32,
+    ) -> Result<(), ReportError> {
+        self.try_report(time_s, event, ticket).map_err(|reason| {
             let cell = match reason {
                 Refusal::QueueFull => &self.counters.dropped,
                 _ => &self.counters.refused,
@@ -64,18 +75,27 @@ impl Scene {
         because
     }
 
-    fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+    fn try_report(&mut self, time_s: f64, event: ContactEvent, ticket: u32) -> Result<(), Refusal> {
         if let ContactEvent::Motion { body, motion } = event {
             return self.report_motion(time_s, body, motion);
         }
         let told = event;
         let (event, held) = self.checked(event)?;
-        self.checked_time(time_s)?;
+        let goes_back = ticket != 0 && time_s < self.clock.newest_s();
+        if goes_back {
+            within("time_s", time_s, limits::LIVE_TIME_S)?;
+        } else {
+            self.checked_time(time_s)?;
+        }
         Counters::add(&self.counters.held, u64::from(held));
         self.note_touch(&told);
         let position = self.counters.position.load(Relaxed);
         self.settle_recording(position);
-        let stamped = self.clock.stamp(time_s, position, matches!(event, ContactEvent::Impact(_)));
+        let stamped = if goes_back {
+            self.clock.stamp_back(time_s)
+        } else {
+            self.clock.stamp(time_s, position, matches!(event, ContactEvent::Impact(_)))
+        };
         self.show_epochs();
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
@@ -94,7 +114,7 @@ impl Scene {
         let touched = |contact| self.touched.get(&contact).map(|touched| touched.surface);
         self.strongest.note(&levelled, touched);
         let sent = self.spun(stamp.sample() as f64 / self.config.inner_rate_hz(), levelled);
-        self.send_stamped(stamp, sent)?;
+        self.send_stamped(stamp, sent, ticket)?;
         let (rings, is_light) = (self.rings(&sent), self.is_light(&sent));
         self.reported.accept(&sent, (time_s, stamp), rings, is_light);
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
@@ -102,7 +122,7 @@ impl Scene {
         if let Some(recording) = &mut self.recording {
             let rate_hz = self.config.inner_rate_hz();
             let reported = (self.clock.epoch(), position as f64 / rate_hz);
-            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&told));
+            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&told), ticket);
         }
         Ok(())
     }
@@ -151,7 +171,7 @@ impl Scene {
         }
     }
 
-    fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
+    fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent, ticket: u32) -> Result<(), Refusal> {
         match event {
             ContactEvent::Moved { contact, sample, emphasis } => {
                 self.send_move(stamp, contact, sample, emphasis)
@@ -162,7 +182,7 @@ impl Scene {
                 Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
                 self.send_contact(stamp, event)
             }
-            ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
+            ContactEvent::Impact(impact) => self.send_impact(stamp, &impact, ticket),
             // It takes its own way.
             ContactEvent::Motion { .. } => Ok(()),
         }
@@ -285,7 +305,7 @@ impl Scene {
         Some(HertzPulse { impulse_n_s: impact.impulse_n_s(), contact_time_s })
     }
 
-    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
+    fn send_impact(&mut self, stamp: Stamp, impact: &Impact, ticket: u32) -> Result<(), Refusal> {
         let pulse = self.pulse(impact).ok_or(Refusal::UnknownBody)?;
         let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
         if pulse.impulse_n_s == 0.0 {
@@ -298,6 +318,9 @@ impl Scene {
         let felt = channel
             .map(|channel| Felt { channel: usize::from(channel.0), probe: impact.probe.map(ProbeId::index) });
         self.clock.note_strike(stamp);
+        if ticket != 0 {
+            self.counters.tickets.arm(ticket);
+        }
         self.send_event(Message::Strike {
             stamp,
             epoch: self.clock.epoch(),
@@ -307,6 +330,7 @@ impl Scene {
             holder: impact.holder.map(BodyId::index),
             felt,
             pulse,
+            ticket,
         })
     }
 

@@ -210,6 +210,9 @@ namespace Asperity
         public static extern int asp_report(IntPtr scene, double timeS, [In] Event[] events, uint count, uint size, out uint taken);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_reset(IntPtr scene);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_time_scale(IntPtr scene, double scale);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_bend_time(IntPtr scene, double scale);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_report_named(IntPtr scene, double timeS, ulong name, ref Event e, uint size);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_withdraw(IntPtr scene, ulong name, out uint waited);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_haptic_gain(IntPtr scene, uint channel, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_bus_gain(IntPtr scene, uint bus, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_get_level(IntPtr scene, Level kind, ulong of, out double level);
@@ -521,7 +524,26 @@ namespace Asperity
         public void SetHapticGain(uint channel, double gain) { Native.Must(Native.asp_set_haptic_gain(handle, channel, gain)); }
         public void SetMuted(bool muted) { Native.Must(Native.asp_set_muted(handle, muted ? 1u : 0u)); }
         public void SetPaused(bool paused) { Native.Must(Native.asp_set_paused(handle, paused ? 1u : 0u)); }
-        public void SetTimeScale(double scale) { Native.Must(Native.asp_set_time_scale(handle, scale)); }
+        /// <summary>Game seconds a second of audio; with bendPitch (0.1 to 2) all that is heard and felt bends with it.</summary>
+        public void SetTimeScale(double scale, bool bendPitch = false)
+        {
+            Native.Must(bendPitch ? Native.asp_bend_time(handle, scale) : Native.asp_set_time_scale(handle, scale));
+        }
+
+        /// <summary>A strike with a name, for games that roll back: reported again, it still sounds once.</summary>
+        public void ReportNamed(double timeS, ulong name, Event strike)
+        {
+            Native.Must(Native.asp_report_named(handle, timeS, name, ref strike, (uint)Marshal.SizeOf(typeof(Event))));
+        }
+
+        /// <summary>Takes a strike with a name back; true where it waited and does not sound.</summary>
+        public bool Withdraw(ulong name)
+        {
+            uint waited;
+            Native.Must(Native.asp_withdraw(handle, name, out waited));
+            return waited != 0;
+        }
+
         public void FadeAll() { Native.Must(Native.asp_fade_all(handle)); }
         public void Reset() { Native.Must(Native.asp_reset(handle)); }
         public void StartRecording() { Native.Must(Native.asp_record_start(handle)); }

@@ -129,6 +129,23 @@ class Scene:
         told = {"body": body, "speed_m_s": speed_m_s, "mass_kg": mass_kg, "radius_m": radius_m, "striker": striker}
         self.report(t, {"event": "impact", **told, **keys})
 
+    def impact_named(
+        self, t: float, name: int, body: str, speed_m_s: float, mass_kg: float, radius_m: float, striker: str = "steel", **keys: Any
+    ) -> None:
+        """A strike with a name (0 to 2**64 - 1), for games that predict and roll back: reported again, also for a time that has gone by, it
+        still sounds once, and while it waits the newer report counts. Names are kept for the next 1024."""
+        told = {"event": "impact", "body": body, "speed_m_s": speed_m_s, "mass_kg": mass_kg, "radius_m": radius_m, "striker": striker}
+        self._native.report_named(name, _contacts.lines([{"t": t, **told, **keys}]))
+
+    def withdraw(self, name: int) -> bool:
+        """Takes a strike with a name back; True where it waited and does not sound."""
+        return self._native.withdraw(name)
+
+    def set_time_scale(self, scale: float, bend_pitch: bool = False) -> None:
+        """Slow motion or fast: game seconds a second of audio, 0.01 to 100, for the "exact" clock ("live" finds it by itself). With
+        `bend_pitch`, 0.1 to 2, and for both clocks, all that is heard and felt bends with it: at 0.5 a bell of 800 Hz rings at 400 Hz."""
+        self._native.set_time_scale(scale, bend_pitch)
+
     @property
     def stats(self) -> dict[str, Any]:
         """What the engine did so far."""

@@ -1,6 +1,7 @@
 //! Recordings and what is known beside them, as files and options say it.
 
 use super::{Options, Unit};
+use crate::columns::{Columns, TIME, is_table};
 use crate::error::CliError;
 use asperity::files::scene_file::probe_of;
 use asperity::{ModalModel, Mode};
@@ -19,10 +20,6 @@ const HIT_N_S: f64 = 0.01;
 const LONGEST_S: f64 = 600.0;
 /// Axes that one recording may have.
 const MOST_AXES: usize = 3;
-/// Share by which steps of time may differ.
-const UNEVEN: f64 = 0.05;
-/// Names under which files hold other things than the recording.
-const TIME: &str = "time_s";
 
 /// Probe, and the table of a scene that makes it.
 pub(super) struct NamedProbe {
@@ -98,10 +95,7 @@ pub(super) fn strokes(options: &Options) -> Result<Recorded, CliError> {
     let mut recorded = Recorded { strokes: Vec::new(), tangential_n: None };
     let mut files = Vec::new();
     for path in &options.strokes {
-        let is_table = path
-            .extension()
-            .is_some_and(|end| ["csv", "tsv", "txt"].iter().any(|known| end.eq_ignore_ascii_case(known)));
-        files.push(if is_table {
+        files.push(if is_table(path) {
             File::Table(path, Columns::read(path)?)
         } else {
             File::Sound(path, sound(path)?)
@@ -208,75 +202,8 @@ fn axes(options: &Options, path: &Path, table: &Columns) -> Result<Vec<Vec<f64>>
 
 /// Rate of a table, Hz.
 fn rate(options: &Options, path: &Path, table: &Columns) -> Result<f64, CliError> {
-    let Some(time) = table.names.iter().position(|name| name == TIME).map(|i| &table.values[i]) else {
-        return options
-            .rate
-            .ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"));
-    };
-    let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
-    let mean = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    if let Some(row) = steps.clone().position(|step| step.is_nan() || step <= 0.0) {
-        let what = format!("time_s does not rise at row {}", row + 2);
-        return Err(CliError::file(path, what, "must be in seconds, one row a sample"));
-    }
-    let uneven = steps.map(|step| (step / mean - 1.0).abs()).fold(0.0, f64::max);
-    if uneven > UNEVEN {
-        let what = format!("steps of time_s differ by {:.0} %", 100.0 * uneven);
-        return Err(CliError::file(path, what, "resample to equal steps"));
-    }
-    Ok(1.0 / mean)
-}
-
-/// A table with a header line.
-pub(super) struct Columns {
-    path: PathBuf,
-    names: Vec<String>,
-    values: Vec<Vec<f64>>,
-}
-
-impl Columns {
-    /// Reads commas, semicolons or tabs.
-    fn read(path: &Path) -> Result<Self, CliError> {
-        let text = std::fs::read(path).map_err(|error| CliError::read(path, &error))?;
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-        let header = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
-        let delimiter = [b';', b'\t', b','].into_iter().find(|d| header.contains(d)).unwrap_or(b',');
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(text);
-        let refused = |error: csv::Error| CliError::file(path, error, "must be a table with a header line");
-        let names: Vec<String> = reader.headers().map_err(refused)?.iter().map(str::to_owned).collect();
-        if names.iter().any(|name| name.parse::<f64>().is_ok()) {
-            return Err(CliError::file(
-                path,
-                "begins with numbers",
-                "must begin with a header line that names the columns",
-            ));
-        }
-        let mut values = vec![Vec::new(); names.len()];
-        for (row, record) in reader.records().enumerate() {
-            let record = record.map_err(refused)?;
-            for (column, field) in record.iter().enumerate() {
-                let number: f64 = field.parse().map_err(|_| {
-                    let what = format!("line {}: {}: \"{field}\" is no number", row + 2, names[column]);
-                    CliError::file(path, what, "must be a number in every row")
-                })?;
-                values[column].push(number);
-            }
-        }
-        if values.first().is_none_or(|first| first.len() < 2) {
-            return Err(CliError::file(path, "holds no rows", "must hold one row a sample"));
-        }
-        Ok(Self { path: path.to_owned(), names, values })
-    }
-
-    fn column(&self, name: &str) -> Result<&[f64], CliError> {
-        let place = self.names.iter().position(|known| known == name).ok_or_else(|| {
-            let what = format!("has no column \"{name}\"");
-            CliError::file(&self.path, what, format!("its columns: {}", self.names.join(", ")))
-        })?;
-        Ok(&self.values[place])
-    }
+    table
+        .rate_hz()?
+        .or(options.rate)
+        .ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"))
 }
