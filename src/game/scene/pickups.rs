@@ -46,7 +46,7 @@ impl Scene {
         if let Some(recording) = &mut self.recording {
             let rate_hz = self.config.inner_rate_hz();
             let reported = (self.clock.epoch(), position as f64 / rate_hz);
-            recording.note(stamp.samples() / rate_hz, reported, &ContactEvent::Motion { body, motion });
+            recording.note(stamp.samples() / rate_hz, reported, &ContactEvent::Motion { body, motion }, 0);
         }
         Ok(())
     }
