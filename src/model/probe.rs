@@ -32,7 +32,7 @@ pub(crate) const FACE_ASPERITIES: f64 = 64.0;
 /// | `fingertip` | 0.15 g of skin on a pad of 1 kN/m; an acceleration channel has what skin and tissue let through; 16 asperities share what is heard | `Probe::default()`: fingertip models of the literature |
 /// | `fingertip-soft` | The same behind a skin of 20 kN/m with asperities of 50 µm, which makes no collisions | Chosen among 5 to 200 kN/m for its sound: centroid 1.1 kHz |
 /// | `fingernail` | 0.5 g of nail, tied to the bone; heard by a tip of 0.5 g and 10 N·s/m, 0.3 mm | Stiffness of keratin on a hard surface; masses and damping **assumed** |
-/// | `stylus` | 30 g of tool in a hand of 0.3 kg behind 1 kN/m and 39 N·s/m, on 6.5 kN/m; heard by a plastic tip of 0.5 g and 15 N·s/m, 0.4 mm | Felt: fitted to published accelerations of a steel-tipped tool (Culbertson, Lopez Delgado, Kuchenbecker 2014); one point of a valley of 20–60 g, 1.3–12 kN/m, 15–39 N·s/m. Heard: impedance of a shaft |
+/// | `stylus` | 30 g of tool in a hand and forearm of 1 kg behind 0.47 kN/m and 26 N·s/m, on 6 kN/m; heard by a plastic tip of 0.5 g and 15 N·s/m, 0.4 mm | Felt: fitted to published accelerations of a steel-tipped tool (Culbertson, Lopez Delgado, Kuchenbecker 2014); one point of a valley of 20–60 g, 1.3–12 kN/m, 15–39 N·s/m. Heard: impedance of a shaft |
 /// | `stylus-steel`, `stylus-wood` | The same with a tip of steel, of wood | as `stylus` |
 /// | `steel-rod` | The same tool; heard by 1 g of steel, 25 N·s/m, 0.5 mm | A rod of 3 mm has 26 N·s/m and 0.9 g at 4 kHz, **computed** |
 /// | `sole` | 50 g of rubber under a leg of 5 kg | Rubber of 5 MPa under a heel of 5 cm², 1 cm thick: E A / t = 250 kN/m; masses and damping **assumed** |
@@ -78,7 +78,7 @@ const FINGERTIP: Probe = Probe {
     asperities: contact::FINGER_ASPERITIES,
 };
 const NAIL: Probe = held(0.5e-3, 5e3, 5.0, 20e-3, 1e6, (0.3e-3, 1.0 / 3.0));
-const STYLUS: Probe = held(30e-3, 1e3, 39.0, 0.3, 6.5e3, (1.6e-3, 0.25));
+const STYLUS: Probe = held(30e-3, 470.0, 26.0, 1.0, 6e3, (1.6e-3, 0.22));
 const RIGID: Probe = held(20e-3, 1e4, 20.0, 0.5, 1e6, (1e-3, 1.0 / 3.0));
 
 const fn held(

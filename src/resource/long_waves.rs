@@ -33,6 +33,11 @@ const TOOL_HZ: f64 = 71.0;
 const QUALITY: f64 = 0.52;
 const BALL_M: f64 = 1.6e-3;
 const SPEED_M_S: f64 = 0.12;
+/// Share of an octave's power that is in its own differences, in those of the next coarser one and
+/// in those of coarser ones: the mean of sin⁸(π λ₀/2λ) over an octave.
+const OF_OWN: f64 = 0.71;
+const OF_NEXT: f64 = 0.08;
+const OF_FINER: f64 = 0.27;
 /// Curvature of an octave that a ball just follows, times its radius (`dsp::fractal_noise`).
 const FOLLOWED: f64 = 0.63;
 
@@ -52,8 +57,23 @@ pub(crate) fn under(surface: &mut Surface, properties: &Properties) -> [f64; OCT
         return none;
     }
     let has = |octave: &usize| wavelength_m(*octave) >= band.shortest_m;
-    let of_map: Vec<f64> = (0..OCTAVES).take_while(has).map(|octave| rms_m(surface, octave)).collect();
-    waves_m(&of_map)
+    let differences: Vec<f64> =
+        (0..OCTAVES).take_while(has).map(|octave| mean_square_m2(surface, octave)).collect();
+    waves_m(&octaves_m(&differences))
+}
+
+/// Rms of the octaves of which the differences have these mean squares, m: what finer waves have in
+/// the differences of a coarser octave is taken off, from the finest on.
+fn octaves_m(mean_squares_m2: &[f64]) -> Vec<f64> {
+    let mut rms_m = vec![0.0; mean_squares_m2.len()];
+    let (mut next_m2, mut finer_m2) = (0.0, 0.0);
+    for (rms_m, mean_square_m2) in rms_m.iter_mut().zip(mean_squares_m2).rev() {
+        let own_m2 = f64::max(0.0, mean_square_m2 - OF_NEXT * next_m2 - OF_FINER * finer_m2) / OF_OWN;
+        finer_m2 += next_m2;
+        next_m2 = own_m2;
+        *rms_m = own_m2.sqrt();
+    }
+    rms_m
 }
 
 /// Waves above the strongest of a map's octaves.
@@ -80,9 +100,9 @@ fn felt_m_s2(wavelength_m: f64, rms_m: f64) -> f64 {
     rms_m.min(followed_m) * omega * omega / (1.0 - x * x).hypot(x / QUALITY)
 }
 
-/// Rms of a map's octave, m, along u and v: fourth differences, as of its local relief
-/// (`surface::local_relief`).
-fn rms_m(surface: &mut Surface, octave: usize) -> f64 {
+/// Mean square of the fourth differences that a wave of an octave fills, m², along u and v, as of
+/// the local relief (`surface::local_relief`).
+fn mean_square_m2(surface: &mut Surface, octave: usize) -> f64 {
     const TAPS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
     let lag_m = 0.5 * wavelength_m(octave);
     let mut out = SurfaceBlock::default();
@@ -111,7 +131,7 @@ fn rms_m(surface: &mut Surface, octave: usize) -> f64 {
         sum += difference * difference;
     }
     const { assert!(TAPS.len() <= MAX_BLOCK, "places of one difference fit a block") };
-    (sum / PLACES as f64).sqrt()
+    sum / PLACES as f64
 }
 
 #[cfg(test)]

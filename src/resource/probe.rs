@@ -4,7 +4,7 @@
 //! ```text
 //! collision   m (1 + e) v      m = pad mass; of a tool whose contact is far softer than a ball on hard ground, the ball alone, 4/3 π r³ ρ
 //! ```
-//! A contact of 6.5 kN/m is not that of a steel tip of 1.6 mm on stone, which Hertz has at 3 MN/m:
+//! A contact of 6 kN/m is not that of a steel tip of 1.6 mm on stone, which Hertz has at 3 MN/m:
 //! it is the tool's own bending and its grip. What strikes the ground without that spring between
 //! is the tip in front of it, and the momentum of the tool behind arrives with the contact force. A
 //! probe that has a [tip of its own](asperity_dsp::micro_contact::HeardTip) is heard by that alone.

@@ -143,8 +143,7 @@ impl Pair {
         self.contact = Some(contact);
         let mut touching = Touching::on(surface);
         // A finger is the engine's own probe unless it says otherwise.
-        touching.probe =
-            toucher.probe.or((!toucher.is_finger()).then_some(step.probes.of(self.face.now())));
+        touching.probe = toucher.probe.or((!toucher.is_finger()).then_some(step.probes.of(self.face.now())));
         (touching.holder, touching.actuator) = (toucher.body, toucher.actuator);
         let sample = ContactSample { closing_m_s: f64::from(closing_m_s.max(0.0)), ..sample };
         events.push(ContactEvent::begin_with(contact, touching, sample));
