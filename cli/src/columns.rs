@@ -50,8 +50,11 @@ impl Columns {
             ));
         }
         let mut values = vec![Vec::new(); names.len()];
-        for (row, record) in reader.records().enumerate() {
-            let record = record.map_err(refused)?;
+        let mut record = csv::StringRecord::new();
+        for row in 0u64.. {
+            if !reader.read_record(&mut record).map_err(refused)? {
+                break;
+            }
             for (column, field) in record.iter().enumerate() {
                 let number: f64 = field.parse().map_err(|_| {
                     let what = format!("line {}: {}: \"{field}\" is no number", row + 2, names[column]);

@@ -17,7 +17,7 @@ pub fn wavelength_m(octave: usize) -> f64 {
 }
 
 /// Samples of a probe of the noise, and how many a cell.
-const LENGTH: usize = 1 << 15;
+const LENGTH: usize = 1 << 14;
 const STEPS_A_CELL: f64 = 16.0;
 
 /// Octave that the shape of all is read from, and third octaves about it.

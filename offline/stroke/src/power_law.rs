@@ -90,10 +90,15 @@ impl PowerLaw {
         let gradual = [2, 6, 10].map(|further| (scale_m(further), true));
         let bare = seen.fitted(f64::INFINITY, false);
         let with_scale = knees.chain(gradual).map(|(scale_m, is_gradual)| seen.fitted(scale_m, is_gradual));
-        let better = |best: (f64, Self), now: (f64, Self)| {
+        let all: Vec<(f64, Self)> = std::iter::once(bare).chain(with_scale).collect();
+        let better = |best: (f64, Self), now: &(f64, Self)| {
             if now.0 + EARNED < best.0 { (now.0 + EARNED, now.1) } else { best }
         };
-        with_scale.fold(bare, better).1
+        let (_, law) = all[1..].iter().fold(all[0], better);
+        // An outer scale that explains more, but has not earned its place, leaves a doubt.
+        let (own, nearest) = (all[0].0, all.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&all[0]));
+        let doubt = if nearest.0 < own { (nearest.1.alpha - law.alpha).abs() } else { 0.0 };
+        Self { alpha_se: law.alpha_se.hypot(doubt), ..law }
     }
 }
 
@@ -132,7 +137,11 @@ impl<'a> Seen<'a> {
         let moved = |law: &PowerLaw, step: Vector3<f64>| PowerLaw {
             alpha: (law.alpha + step[0].clamp(-0.5, 0.5)).clamp(-1.0, 5.0),
             at_1mm_m: law.at_1mm_m * 10f64.powf(0.05 * step[1].clamp(-10.0, 10.0)),
-            outer_scale_m: (law.outer_scale_m * step[2].clamp(-0.5, 0.5).exp()).clamp(1e-4, 10.0),
+            outer_scale_m: if is_gradual {
+                (law.outer_scale_m * step[2].clamp(-0.5, 0.5).exp()).clamp(1e-4, 10.0)
+            } else {
+                law.outer_scale_m
+            },
             ..*law
         };
         let mut misfit = f64::INFINITY;

@@ -8,6 +8,8 @@ use asperity_fft::num_complex::Complex;
 
 /// Band of the recording that lines are looked for in, Hz.
 const BAND_HZ: (f64, f64) = (15.0, 1200.0);
+/// Places for each period of the highest frequency that is kept.
+const PLACES_A_PERIOD: f64 = 4.0;
 /// Bins of the padded spectrum for one of the unpadded.
 const PADDED: usize = 4;
 
@@ -17,6 +19,11 @@ pub(crate) struct Profile {
     pub(crate) step_m: f64,
     pub(crate) mean_speed_m_s: f64,
     rate_hz: f64,
+}
+
+/// Highest frequency that is kept at a rate, Hz.
+fn top_hz(rate_hz: f64) -> f64 {
+    BAND_HZ.1.min(0.4 * rate_hz)
 }
 
 /// Felt height of an axis within [`BAND_HZ`].
@@ -29,7 +36,7 @@ pub(crate) fn felt_height(axis: &[f64], stroke: &Stroke, tool: &Tool) -> Vec<f64
     planner.plan_fft_forward(length).process(&mut bins);
     let force_n = stroke.force_n.mean(0, stroke.len());
     let bin_hz = stroke.rate_hz / length as f64;
-    let top_hz = BAND_HZ.1.min(0.4 * stroke.rate_hz);
+    let top_hz = top_hz(stroke.rate_hz);
     for i in 0..=length / 2 {
         let hz = i as f64 * bin_hz;
         let gain = if (BAND_HZ.0..top_hz).contains(&hz) {
@@ -50,10 +57,11 @@ pub(crate) fn felt_height(axis: &[f64], stroke: &Stroke, tool: &Tool) -> Vec<f64
 pub(crate) fn at_places(height_m: &[f64], path_m: &[f64], stroke: &Stroke) -> Profile {
     let total_m = path_m.last().copied().unwrap_or(0.0);
     let count = height_m.len();
-    let step_m = total_m / count.max(1) as f64;
+    let places = count as f64 * (PLACES_A_PERIOD * top_hz(stroke.rate_hz) / stroke.rate_hz).min(1.0);
+    let step_m = total_m / places.floor().max(1.0);
     let mut after = 0;
     let at = |i: usize| height_m[i.min(count - 1)];
-    let heights = (0..count)
+    let heights = (0..places as usize)
         .map(|i| {
             let x = (i as f64 + 0.5) * step_m;
             while after + 1 < count && path_m[after] < x {
@@ -87,8 +95,7 @@ pub(crate) fn spectrum(profile: &Profile) -> (Vec<f64>, f64) {
 /// Range of bins that holds the band that was kept.
 pub(crate) fn held(profile: &Profile, bin_q: f64, bins: usize) -> (usize, usize) {
     let v = profile.mean_speed_m_s.max(1e-9);
-    let top_hz = BAND_HZ.1.min(0.4 * profile.rate_hz);
     let low = (1.3 * BAND_HZ.0 / v / bin_q) as usize;
-    let high = (0.8 * top_hz / v / bin_q) as usize;
+    let high = (0.8 * top_hz(profile.rate_hz) / v / bin_q) as usize;
     (low.max(8), high.min(bins))
 }

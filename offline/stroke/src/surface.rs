@@ -300,6 +300,12 @@ fn solve(
     let mean = recorded.iter().map(|level| level.2).sum::<f64>() / count;
     let variance = recorded.iter().map(|level| (level.2 - mean).powi(2)).sum::<f64>() / count;
     let left = recorded.iter().map(|level| (level.2 - level.3).powi(2)).sum::<f64>() / count;
+    if law.alpha < 0.0 {
+        warnings.push(format!(
+            "α {:.2}: ground that is the rougher the finer one looks is none; the probe's constants, or its skin (ridge_m), are not those of the recording",
+            law.alpha
+        ));
+    }
     if let Some(gain) = parted.force_db_per_octave.filter(|gain| gain.abs() > 1.5) {
         warnings.push(format!("levels change by {gain:+.1} dB a doubling of force beside the probe's law: soft ground, or another probe"));
     }

@@ -97,8 +97,8 @@ pub fn state() -> Result<Found, String> {
         in_joints += usize::from(*height < -0.02 * TILES_M[2]);
     }
     let sentence = format!(
-        "The pad follows the ground of the tiles and leaps at their joints: of {all} instants that strike the body with more than a \
-         fifth of the hardest, {in_joints} lie in a joint, a tenth of the way."
+        "Profile, pad and impulses are columns. Of {all} instants that strike the body with more than a fifth of the hardest blow, \
+         {in_joints} lie in the joints of the tiles, which are a tenth of the way."
     );
     let time_s = (0..height_m.len()).map(|n| n as f64 * every as f64 / rate_hz).collect();
     let ours = columns([
