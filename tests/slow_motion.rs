@@ -158,11 +158,11 @@ fn a_recording_of_bent_time_replays_to_the_bit() {
     let mut time_s = 0.0;
     for (step, scale) in [1.0, 0.4, 0.4, 1.3, 1.0, 1.0, 1.0].into_iter().enumerate() {
         scene.set_time_scale(scale, true).unwrap();
-        time_s += 0.05;
         if step < 6 {
-            scene.report(time_s, ContactEvent::Impact(Impact::on(body))).unwrap();
+            scene.report(time_s + 0.02, ContactEvent::Impact(Impact::on(body))).unwrap();
         }
         on(&mut renderer, 4410, 128, &mut sound);
+        time_s += 0.1 * scale;
     }
     let recorded = scene.stop_recording();
     let mut text = Vec::new();

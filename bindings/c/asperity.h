@@ -883,6 +883,23 @@ int32_t asp_reset(struct asp_scene *scene);
 /// clock.
 int32_t asp_set_time_scale(struct asp_scene *scene, double scale);
 
+/// Sets the game seconds a second of audio, 0.1 to 2, and lets all that is heard and felt bend with
+/// it: at 0.5 a bell of 800 Hz rings at 400 Hz, twice as long. For both clocks; 1 ends it.
+int32_t asp_bend_time(struct asp_scene *scene, double scale);
+
+/// Reports a strike (an event of kind ASP_IMPACT, of `size` bytes) under a name, for games that
+/// predict and roll back: reported again, also for a time that has gone by, it still sounds once,
+/// and while it waits the newer report counts. Names are kept for the next 1024.
+int32_t asp_report_named(struct asp_scene *scene,
+                         double time_s,
+                         uint64_t name,
+                         const struct asp_event *event,
+                         uint32_t size);
+
+/// Takes a strike with a name back: `waited` is 1 where it waited and does not sound, 0 where it
+/// has sounded already or is not known.
+int32_t asp_withdraw(struct asp_scene *scene, uint64_t name, uint32_t *waited);
+
 /// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills
 /// nothing.
 void asp_init_stats(struct asp_stats *stats, uint32_t size);

@@ -19,6 +19,10 @@ passed=0
 shown() { awk -v fence="\`\`\`$2" '$0 == fence && !done { on = 1; next } /^ *```$/ && on { on = 0; done = 1 } on' "$1"; }
 ok() { passed=$((passed + 1)) && printf 'ok %2d   %s (%s s)\n' "$passed" "$1" "$SECONDS"; }
 fail() { echo "error: $1" && exit 1; }
+skip() {
+    [ "${ASPERITY_NOTHING_SKIPPED:-}" != 1 ] || fail "$1"
+    echo "skipped: $1"
+}
 
 target="$(cargo metadata --format-version 1 --no-deps | python3 -c 'import json,sys; print(json.load(sys.stdin)["target_directory"])')"
 # The header's generator keeps its build beside the others.
@@ -89,6 +93,14 @@ ok "nothing is allocated or freed on the audio thread"
 ok "hostile calls"
 "$work/older"
 ok "a program that was compiled with an older header"
+if [ -f /usr/include/openxr/openxr.h ]; then
+    # shellcheck disable=SC2086
+    gcc -std=c99 -pedantic $strict $found tests/headset.c -o "$work/headset" $libs
+    "$work/headset" "$([ "$tier" = 2 ] && echo 100000 || echo 10000)"
+    ok "a headset's runtime refuses no call: strokes, hitches, focus lost, another session"
+else
+    skip "no openxr/openxr.h (libopenxr-dev)"
+fi
 "$work/fuzz" 1 300
 ok "random calls"
 cp "$lib/libasperity.so" "$work/another_copy.so"
@@ -108,10 +120,6 @@ need() { # PROGRAM PACKAGE…: installs what is missing, where it may.
     shift
     { apt-get install -y --no-install-recommends "$@" || { apt-get update && apt-get install -y --no-install-recommends "$@"; }; } >"$work/apt.log" 2>&1 ||
         { tail -3 "$work/apt.log" && return 1; }
-}
-skip() {
-    [ "${ASPERITY_NOTHING_SKIPPED:-}" != 1 ] || fail "$1"
-    echo "skipped: $1"
 }
 
 if need valgrind valgrind; then

@@ -19,7 +19,7 @@ case "$built" in
 esac
 
 install -d "$prefix/include" "$prefix/lib/pkgconfig" "$prefix/lib/cmake/asperity"
-install -m 644 asperity.h asperity.hpp "$prefix/include/"
+install -m 644 asperity.h asperity.hpp asperity_openxr.h "$prefix/include/"
 install -m 755 "$built" "$prefix/lib/$shared"
 install -m 644 "$static" "$prefix/lib/libasperity.a"
 # Names of lines are four fifths of the files, and tell a program of C nothing; names of functions stay.

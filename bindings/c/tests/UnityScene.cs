@@ -129,6 +129,25 @@ static class UnityScene
         foreach (var x in felt) most = Math.Max(most, Math.Abs(x));
         Must(most > 0.5f && most <= 1f, "a blow that a finger feels stays within full scale: " + most);
 
+        // The same blow on a controller and on a pad: they vibrate, stop, and go on where they were unplugged.
+        var haptics = new GameObject("Hand").AddComponent<AsperityHaptics>();
+        haptics.HapticChannel = 1;
+        float motors = 0f, last = 1f;
+        haptics.Motors.AddListener((heavy, light) => { last = Math.Max(heavy, light); motors = Math.Max(motors, last); });
+        for (int plugged = 0; plugged < 3; plugged++)
+        {
+            UnityEngine.XR.InputDevice.Connected = plugged != 1;
+            UnityEngine.XR.InputDevice.Amplitudes.Clear();
+            Second(step => { if (step == 5) world.Report(tapped); });
+            Second(step => { });
+            var told = UnityEngine.XR.InputDevice.Amplitudes;
+            Must((told.Count > 0) == (plugged != 1) && UnityEngine.XR.InputDevice.Wrong == 0, "a controller that is there vibrates: " + told.Count);
+            Must(motors > 0.05f && motors <= 1f && last == 0f, "motors turn and stop: " + motors + ", " + last);
+        }
+        Must(UnityEngine.XR.InputDevice.Stops >= 2, "a controller stops");
+        Messages.Send(haptics, "OnDisable");
+        haptics.gameObject.Components.Clear();
+
         // A ball of 2 cm that slides over the plate at 0.5 m/s, and one that rolls: softer, and each ends where it leaves.
         Physics.Ground = null;
         Second(step => { });

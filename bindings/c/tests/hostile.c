@@ -328,7 +328,10 @@ static void ids_and_numbers(void) {
     asp_init_event(&blow, sizeof blow);
     blow.kind = ASP_END;
     REFUSED(asp_report_named(scene, 0, 5, &blow, sizeof blow), ASP_BAD_ARGUMENT, "kind");
-    blow.kind = ASP_IMPACT, blow.body = body;
+    uint64_t gong;
+    loud.strike_gain = 1.0;
+    MUST(asp_add_body(scene, &loud, &gong) == ASP_OK);
+    blow.kind = ASP_IMPACT, blow.body = gong;
     uint32_t waited;
     MUST(asp_report_named(scene, 1, 5, &blow, sizeof blow) == ASP_OK);
     MUST(asp_report_named(scene, 1, 5, &blow, sizeof blow) == ASP_OK);

@@ -167,3 +167,36 @@ namespace AOT
 {
     [AttributeUsage(AttributeTargets.Method)] public class MonoPInvokeCallbackAttribute : Attribute { public MonoPInvokeCallbackAttribute(Type type) { } }
 }
+namespace UnityEngine.Events
+{
+    public class UnityEvent<A, B>
+    {
+        event Action<A, B> called;
+        public void AddListener(Action<A, B> to) { called += to; }
+        public void Invoke(A a, B b) { if (called != null) called(a, b); }
+    }
+}
+namespace UnityEngine.XR
+{
+    public enum XRNode { LeftHand = 4, RightHand = 5 }
+    /// <summary>A controller that notes what it is told; Unity's own refuses an amplitude outside 0 to 1.</summary>
+    public struct InputDevice
+    {
+        public static bool Connected = true;
+        public static readonly List<float> Amplitudes = new List<float>();
+        public static int Stops, Wrong;
+        public XRNode Node;
+        public bool isValid { get { return Connected && Node == XRNode.RightHand; } }
+        public bool SendHapticImpulse(uint channel, float amplitude, float duration)
+        {
+            if (!isValid || channel != 0 || !(amplitude >= 0f && amplitude <= 1f) || !(duration > 0f)) Wrong++;
+            Amplitudes.Add(amplitude);
+            return true;
+        }
+        public void StopHaptics() { Stops++; }
+    }
+    public static class InputDevices
+    {
+        public static InputDevice GetDeviceAtXRNode(XRNode node) { return new InputDevice { Node = node }; }
+    }
+}

@@ -3,11 +3,12 @@
 //!
 //! | extension | rule kept |
 //! |---|---|
-//! | parametric | at most [`MOST_POINTS`] points of either envelope a call, 1–1000 Hz, times in ns that do not fall and lie inside the frame, the first points at 0, the first frame at least as long as the runtime says, amplitudes and frequencies 0–1 |
+//! | parametric | times in ns since the stream began, which do not fall from frame to frame, strokes later than the one before; at most [`MOST_POINTS`] of each a call, two amplitudes in the first frame and one in any other; the first points at 0, the first frame at least as long as the runtime says; no frequency or stroke behind the last amplitude; 1–1000 Hz, said by the first frame alone; 0–1 |
 //! | amplitude envelope | at most [`MOST_AMPLITUDES`] values 0–1, evenly over the duration |
 //! | PCM | at most [`PCM_STORE`] samples wait in the runtime; what it has not consumed is sent again; every call appends |
 //!
-//! [`broken_rule`] is the list of refusals of the specification, written apart from the writer.
+//! [`broken_rule`] is the list of refusals of the specification (OpenXR 1.1.60 and its conformance
+//! tests), written apart from the writer.
 
 use crate::clip::{Clip, Line};
 use crate::device::Device;
@@ -22,7 +23,7 @@ pub const PCM_STORE: usize = 4000;
 /// Time that a frame's last values are held, s: the next frame has to come within it.
 pub const HELD_S: f64 = 0.05;
 
-/// A point: ns since the frame's beginning, 0 to 1.
+/// A point: ns since the stream's beginning, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// ns.
@@ -34,7 +35,7 @@ pub struct Point {
 /// A stroke of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transient {
-    /// ns since the frame's beginning.
+    /// ns since the stream's beginning.
     pub time_ns: i64,
     /// 0 to 1.
     pub amplitude: f32,
@@ -64,14 +65,12 @@ pub struct Frame {
     pub frequency: Vec<Point>,
     /// Strokes.
     pub transients: Vec<Transient>,
-    /// Frequency 0, Hz.
+    /// Frequency 0, Hz; 0 = as the stream's first frame says.
     pub min_frequency_hz: f32,
-    /// Frequency 1, Hz.
+    /// Frequency 1, Hz; 0 likewise.
     pub max_frequency_hz: f32,
     /// Position among others.
     pub streaming: Streaming,
-    /// ns.
-    pub duration_ns: i64,
 }
 
 fn ns(time_s: f64) -> i64 {
@@ -103,7 +102,28 @@ pub fn frames(clip: &Clip, device: &Device, first_frame_s: f64) -> Result<Vec<Fr
         let to_s = if k + 1 == count && k == 0 { cuts[1].max(first_frame_s) } else { cuts[k + 1] };
         frame(&clip, device, cuts[k], to_s, streaming(k, count))
     };
-    Ok((0..count).map(span).collect())
+    let mut frames: Vec<Frame> = (0..count).map(span).collect();
+    part_strokes(&mut frames);
+    Ok(frames)
+}
+
+/// Strokes of one moment come a nanosecond apart; what is behind the end is left out.
+fn part_strokes(frames: &mut [Frame]) {
+    let ends_ns = frames.last().and_then(Frame::ends_ns).unwrap_or_default();
+    let mut before_ns = -1;
+    for stroke in frames.iter_mut().flat_map(|frame| &mut frame.transients) {
+        stroke.time_ns = stroke.time_ns.max(before_ns + 1);
+        before_ns = stroke.time_ns;
+    }
+    frames.iter_mut().for_each(|frame| frame.transients.retain(|stroke| stroke.time_ns <= ends_ns));
+}
+
+impl Frame {
+    /// Time of its last amplitude, ns.
+    #[must_use]
+    pub fn ends_ns(&self) -> Option<i64> {
+        self.amplitude.last().map(|point| point.time_ns)
+    }
 }
 
 fn streaming(index: usize, count: usize) -> Streaming {
@@ -125,78 +145,94 @@ fn end_of_frame(clip: &Clip, from_s: f64, ends_s: f64) -> f64 {
 }
 
 fn frame(clip: &Clip, device: &Device, from_s: f64, to_s: f64, streaming: Streaming) -> Frame {
-    let duration_ns = ns(to_s - from_s).max(1);
+    let begins = matches!(streaming, Streaming::None | Streaming::First);
     let points = |values: &[(f64, f64)]| -> Vec<Point> {
         let mut line = Line::new(values.iter().copied());
-        let mut out = vec![Point { time_ns: 0, value: line.at(from_s) as f32 }];
-        for (time_s, value) in values.iter().filter(|(t, _)| *t > from_s && *t < to_s) {
-            out.push(Point { time_ns: ns(time_s - from_s).min(duration_ns), value: *value as f32 });
+        let mut out = Vec::new();
+        if begins {
+            out.push(Point { time_ns: 0, value: line.at(from_s) as f32 });
         }
-        out.push(Point { time_ns: duration_ns, value: line.at(to_s) as f32 });
+        for (time_s, value) in values.iter().filter(|(t, _)| *t > from_s && *t < to_s) {
+            out.push(Point { time_ns: ns(*time_s), value: *value as f32 });
+        }
+        out.push(Point { time_ns: ns(to_s), value: line.at(to_s) as f32 });
         out
     };
     let amplitude: Vec<_> = clip.amplitude.iter().map(|p| (p.time_s, p.amplitude)).collect();
     let frequency: Vec<_> = clip.frequency.iter().map(|p| (p.time_s, p.frequency)).collect();
     let last = matches!(streaming, Streaming::None | Streaming::Final);
     let inside = |t: f64| t >= from_s && (t < to_s || (last && t <= to_s));
-    let transients = clip
-        .amplitude
-        .iter()
-        .filter(|p| inside(p.time_s))
-        .filter_map(|p| p.emphasis.map(|e| (p.time_s, e)))
-        .map(|(t, e)| Transient {
-            time_ns: ns(t - from_s),
-            amplitude: e.amplitude as f32,
-            frequency: e.frequency as f32,
-        })
-        .collect();
+    let strokes = clip.amplitude.iter().filter(|p| inside(p.time_s));
+    let transients = strokes.filter_map(|p| p.emphasis.map(|e| (p.time_s, e))).map(|(t, e)| Transient {
+        time_ns: ns(t),
+        amplitude: e.amplitude as f32,
+        frequency: e.frequency as f32,
+    });
+    let band_hz = if begins { device.band_hz } else { [0.0; 2] };
     Frame {
         amplitude: points(&amplitude),
         frequency: if frequency.is_empty() { Vec::new() } else { points(&frequency) },
-        transients,
-        min_frequency_hz: device.band_hz[0] as f32,
-        max_frequency_hz: device.band_hz[1] as f32,
+        transients: transients.collect(),
+        min_frequency_hz: band_hz[0] as f32,
+        max_frequency_hz: band_hz[1] as f32,
         streaming,
-        duration_ns,
     }
 }
 
-/// The first rule of the specification that a frame breaks.
+/// The first rule of the specification that a stream breaks, and the frame that does.
 #[must_use]
-pub fn broken_rule(frame: &Frame, first_frame_s: f64) -> Option<&'static str> {
-    let in_order = |points: &[Point]| points.windows(2).all(|w| w[0].time_ns <= w[1].time_ns);
+pub fn broken_rule(frames: &[Frame], first_frame_s: f64) -> Option<(usize, &'static str)> {
+    let mut ends = [0, 0, -1];
+    (0..frames.len()).find_map(|index| {
+        let runs = index > 0;
+        broken_by(&frames[index], first_frame_s, runs, &mut ends).map(|rule| (index, rule))
+    })
+}
+
+/// The first rule that a frame breaks; `ends` are the last times of amplitudes, frequencies and
+/// strokes so far, ns.
+fn broken_by(frame: &Frame, first_frame_s: f64, runs: bool, ends: &mut [i64; 3]) -> Option<&'static str> {
+    let Frame { amplitude, frequency, transients, min_frequency_hz, max_frequency_hz, streaming } = frame;
+    let in_order = |points: &[Point], from: i64| {
+        points.first().is_none_or(|p| p.time_ns >= from)
+            && points.windows(2).all(|w| w[0].time_ns <= w[1].time_ns)
+    };
     let values = |points: &[Point]| points.iter().all(|p| (0.0..=1.0).contains(&p.value));
-    let inside = |points: &[Point]| points.iter().all(|p| (0..=frame.duration_ns).contains(&p.time_ns));
     let starts = |points: &[Point]| points.first().is_none_or(|p| p.time_ns == 0);
-    let begins = matches!(frame.streaming, Streaming::None | Streaming::First);
+    let begins = matches!(streaming, Streaming::None | Streaming::First);
+    let is_last = matches!(streaming, Streaming::None | Streaming::Final);
+    let unsaid = (*min_frequency_hz, *max_frequency_hz) == (0.0, 0.0);
+    let band = 1.0..=1000.0;
+    let said = band.contains(min_frequency_hz)
+        && band.contains(max_frequency_hz)
+        && min_frequency_hz <= max_frequency_hz;
+    let later = transients.first().is_none_or(|t| t.time_ns > ends[2])
+        && transients.windows(2).all(|w| w[0].time_ns < w[1].time_ns);
+    let stroke = |t: &Transient| (0.0..=1.0).contains(&t.amplitude) && (0.0..=1.0).contains(&t.frequency);
+    let end = |points: &[Point], before: i64| points.last().map_or(before, |p| p.time_ns);
+    let now =
+        [end(amplitude, ends[0]), end(frequency, ends[1]), transients.last().map_or(ends[2], |t| t.time_ns)];
     let checks = [
-        (frame.amplitude.is_empty() && frame.transients.is_empty(), "nothing to play"),
-        (frame.amplitude.len() > MOST_POINTS, "too many amplitude points"),
-        (frame.frequency.len() > MOST_POINTS, "too many frequency points"),
-        (frame.transients.len() > MOST_POINTS, "too many transients"),
-        (!in_order(&frame.amplitude) || !in_order(&frame.frequency), "times fall"),
-        (!values(&frame.amplitude) || !values(&frame.frequency), "a value outside 0 to 1"),
-        (!inside(&frame.amplitude) || !inside(&frame.frequency), "a point outside the frame"),
-        (begins && (!starts(&frame.amplitude) || !starts(&frame.frequency)), "the first point is not at 0"),
-        (frame.duration_ns <= 0, "no duration"),
-        (begins && (frame.duration_ns as f64) < first_frame_s * 1e9 - 1.0, "the first frame is too short"),
-        (!(1.0..=1000.0).contains(&frame.min_frequency_hz), "the lowest frequency is outside 1 to 1000 Hz"),
+        (runs == begins, "a first frame in a stream, or another without one"),
+        (amplitude.len() < if begins { 2 } else { 1 }, "too few amplitude points"),
+        (amplitude.len() > MOST_POINTS, "too many amplitude points"),
+        (frequency.len() > MOST_POINTS, "too many frequency points"),
+        (transients.len() > MOST_POINTS, "too many transients"),
+        (!in_order(amplitude, ends[0]) || !in_order(frequency, ends[1]) || !later, "times fall"),
         (
-            !(frame.min_frequency_hz..=1000.0).contains(&frame.max_frequency_hz),
-            "the highest frequency is out of range",
+            !values(amplitude) || !values(frequency) || !transients.iter().all(stroke),
+            "a value outside 0 to 1",
         ),
+        (begins && !(starts(amplitude) && starts(frequency)), "the first point is not at 0"),
         (
-            frame.transients.iter().any(|t| !(0..=frame.duration_ns).contains(&t.time_ns)),
-            "a transient outside the frame",
+            *streaming == Streaming::First && (now[0] as f64) < first_frame_s * 1e9 - 1.0,
+            "the first frame is too short",
         ),
-        (
-            frame
-                .transients
-                .iter()
-                .any(|t| !(0.0..=1.0).contains(&t.amplitude) || !(0.0..=1.0).contains(&t.frequency)),
-            "a transient outside 0 to 1",
-        ),
+        (is_last && (now[1] > now[0] || now[2] > now[0]), "something behind the last amplitude"),
+        (!unsaid && !said, "frequencies outside 1 to 1000 Hz"),
+        (!begins && !unsaid, "a later frame says its frequencies"),
     ];
+    *ends = now;
     checks.into_iter().find(|(broken, _)| *broken).map(|(_, rule)| rule)
 }
 

@@ -109,13 +109,25 @@ proptest! {
     fn no_parametric_frame_breaks_a_rule_of_the_specification(clip in clips(), first_frame_s in 0.0..0.3_f64) {
         let device = Device::quest();
         let Ok(frames) = xr::frames(&clip, &device, first_frame_s) else { return Ok(()) };
-        for frame in &frames {
-            prop_assert_eq!(xr::broken_rule(frame, first_frame_s), None, "{:?}", frame.streaming);
-        }
-        let total_ns: i64 = frames.iter().map(|f| f.duration_ns).sum();
-        prop_assert!((total_ns as f64 * 1e-9 - clip.duration_s().max(first_frame_s)).abs() < 1e-6 || frames.len() > 1);
+        prop_assert_eq!(xr::broken_rule(&frames, first_frame_s), None);
+        let ends_s = frames.last().and_then(xr::Frame::ends_ns).unwrap() as f64 * 1e-9;
+        prop_assert!((ends_s - clip.duration_s().max(first_frame_s)).abs() < 1e-6 || frames.len() > 1);
+        prop_assert!((ends_s - clip.duration_s()).abs() < 1e-6 || frames.len() == 1);
         let envelope = xr::amplitude_envelope(&clip, 500.0).unwrap();
         prop_assert!(envelope.len() <= xr::MOST_AMPLITUDES && envelope.iter().all(|a| (0.0..=1.0).contains(a)));
+    }
+
+    #[test]
+    fn frames_as_they_were_written_once_are_refused(clip in clips()) {
+        // Times of each frame from 0, and the range of frequencies in every one.
+        let Ok(mut frames) = xr::frames(&clip, &Device::quest(), 0.05) else { return Ok(()) };
+        let Some(later) = frames.get_mut(1) else { return Ok(()) };
+        let was = later.clone();
+        (later.min_frequency_hz, later.max_frequency_hz) = (55.0, 200.0);
+        prop_assert_eq!(xr::broken_rule(&frames, 0.05), Some((1, "a later frame says its frequencies")));
+        frames[1] = was;
+        frames[1].amplitude.iter_mut().for_each(|point| point.time_ns /= 1000);
+        prop_assert_eq!(xr::broken_rule(&frames, 0.05), Some((1, "times fall")));
     }
 
     #[test]

@@ -1,0 +1,298 @@
+/* Live haptics against a runtime that is none: it judges each call by the rules of XR_EXT_haptic_parametric (OpenXR 1.1.60) and of
+ * XrHapticVibration, loses its focus and its session, and plays in a time of its own. Nothing here links OpenXR. */
+#include <math.h>
+#include <openxr/openxr.h>
+
+#include "common.h"
+#include <asperity_openxr.h>
+
+#define RATE 48000.0
+#define BLOCK 128
+
+/* The runtime. */
+static struct {
+    int focused, parametric;
+    uint64_t session;
+    XrDuration first_frame_ns;
+    double now_s;
+    int streams;
+    double began_s;
+    XrDuration amplitude_ns, frequency_ns;
+    uint64_t calls, frames, points, firsts, lasts, broken, plain, stops;
+    const char *rule;
+    double played_amplitude, first_call_s;
+} runtime;
+
+static XrResult broken(const char *rule) {
+    runtime.broken++;
+    runtime.rule = rule;
+    return XR_ERROR_VALIDATION_FAILURE;
+}
+
+static int ordered(const asp_xr_value *values, uint32_t count, XrDuration from) {
+    for (uint32_t at = 0; at < count; from = values[at++].time) {
+        if (values[at].time < from || !(values[at].value >= 0.0f && values[at].value <= 1.0f))
+            return 0;
+    }
+    return 1;
+}
+
+static XrResult judge(const asp_xr_vibration *frame) {
+    int type = frame->stream_frame_type, begins = type == ASP_XR_WHOLE || type == ASP_XR_FIRST;
+    uint32_t levels = frame->amplitude_count, tones = frame->frequency_count;
+    float low = frame->min_frequency_hz, high = frame->max_frequency_hz;
+    /* A stream is over 50 ms after its last point. */
+    if (runtime.streams && (runtime.now_s - runtime.began_s) * 1e9 > (double)(runtime.amplitude_ns + ASP_XR_HELD_NS))
+        runtime.streams = 0;
+    if (type < 0 || type > 3)
+        return broken("an unknown kind of frame");
+    if (levels < (begins ? 2u : 1u))
+        return broken("too few amplitude points");
+    if (levels > ASP_XR_MOST_POINTS || tones > ASP_XR_MOST_POINTS || frame->transient_count > ASP_XR_MOST_POINTS)
+        return broken("too many points");
+    if (begins && (frame->amplitudes[0].time != 0 || (tones > 0 && frame->frequencies[0].time != 0)))
+        return broken("the first point is not at 0");
+    if (!begins && !runtime.streams)
+        return broken("no stream is running");
+    if (type == ASP_XR_FIRST && frame->amplitudes[levels - 1].time < runtime.first_frame_ns)
+        return broken("the first frame is too short");
+    if (!ordered(frame->amplitudes, levels, begins ? 0 : runtime.amplitude_ns) ||
+        !ordered(frame->frequencies, tones, begins ? 0 : runtime.frequency_ns))
+        return broken("times fall, or a value is outside 0 to 1");
+    if (!begins && (low != 0.0f || high != 0.0f))
+        return broken("a later frame says its frequencies");
+    if ((low == 0.0f) != (high == 0.0f) || (low != 0.0f && (low < 1.0f || high > 1000.0f || high < low)))
+        return broken("frequencies outside 1 to 1000 Hz");
+    runtime.amplitude_ns = frame->amplitudes[levels - 1].time;
+    runtime.frequency_ns = tones > 0 ? frame->frequencies[tones - 1].time : begins ? 0 : runtime.frequency_ns;
+    if ((type == ASP_XR_WHOLE || type == ASP_XR_LAST) && runtime.frequency_ns > runtime.amplitude_ns)
+        return broken("a frequency behind the last amplitude");
+    if (begins)
+        runtime.began_s = runtime.now_s, runtime.firsts++;
+    runtime.lasts += type == ASP_XR_LAST;
+    runtime.streams = type == ASP_XR_FIRST || type == ASP_XR_INTERMEDIATE;
+    runtime.frames++, runtime.points += levels;
+    for (uint32_t at = 0; at < levels; at++)
+        runtime.played_amplitude = fmax(runtime.played_amplitude, frame->amplitudes[at].value);
+    return XR_SUCCESS;
+}
+
+/* The judge itself: what the extension's conformance tests refuse. */
+static void judges(void) {
+    asp_xr_value two[2] = {{0, 0.5f}, {60000000, 0.5f}}, wild[2] = {{0, 0.5f}, {60000000, 1.1f}}, back[2] = {{0, 0.5f}, {10000000, 0.5f}};
+    asp_xr_vibration frame;
+    memset(&runtime, 0, sizeof runtime), memset(&frame, 0, sizeof frame);
+    runtime.first_frame_ns = 50000000;
+    frame.type = ASP_XR_TYPE_PARAMETRIC_VIBRATION, frame.amplitudes = two;
+    frame.amplitude_count = 2, frame.stream_frame_type = ASP_XR_INTERMEDIATE;
+    MUST(judge(&frame) < 0); /* no stream */
+    frame.stream_frame_type = ASP_XR_FIRST, frame.amplitude_count = 1;
+    MUST(judge(&frame) < 0);
+    frame.amplitude_count = 2, frame.amplitudes = wild;
+    MUST(judge(&frame) < 0);
+    frame.amplitudes = back;
+    MUST(judge(&frame) < 0); /* too short */
+    frame.amplitudes = two, frame.min_frequency_hz = 55.0f;
+    MUST(judge(&frame) < 0); /* one frequency alone */
+    frame.max_frequency_hz = 200.0f;
+    MUST(judge(&frame) == XR_SUCCESS);
+    frame.stream_frame_type = ASP_XR_INTERMEDIATE, two[0].time = 60000000, two[1].time = 70000000;
+    MUST(judge(&frame) < 0); /* frequencies again */
+    frame.min_frequency_hz = frame.max_frequency_hz = 0.0f, frame.amplitudes = back;
+    MUST(judge(&frame) < 0); /* times fall */
+    frame.amplitudes = two;
+    MUST(judge(&frame) == XR_SUCCESS);
+    runtime.now_s = 1.0;
+    MUST(judge(&frame) < 0); /* the stream ran dry */
+}
+
+static XrResult XRAPI_CALL apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic) {
+    runtime.calls++;
+    if (session != (XrSession)(uintptr_t)runtime.session)
+        return XR_ERROR_HANDLE_INVALID;
+    if (info->type != XR_TYPE_HAPTIC_ACTION_INFO || info->action != (XrAction)(uintptr_t)7)
+        return broken("another action");
+    if (!runtime.focused) {
+        runtime.streams = 0;
+        return XR_SESSION_NOT_FOCUSED;
+    }
+    if (runtime.first_call_s < 0.0)
+        runtime.first_call_s = runtime.now_s;
+    if (haptic->type == ASP_XR_TYPE_PARAMETRIC_VIBRATION && runtime.parametric)
+        return judge((const asp_xr_vibration *)haptic);
+    const XrHapticVibration *plain = (const XrHapticVibration *)haptic;
+    runtime.plain++;
+    if (haptic->type != XR_TYPE_HAPTIC_VIBRATION || plain->duration <= 0 || !(plain->amplitude >= 0.0f && plain->amplitude <= 1.0f) ||
+        !(plain->frequency >= 0.0f))
+        return broken("a plain vibration out of range");
+    return XR_SUCCESS;
+}
+
+static XrResult XRAPI_CALL stop(XrSession session, const XrHapticActionInfo *info) {
+    (void)session, (void)info;
+    runtime.streams = 0, runtime.stops++;
+    return XR_SUCCESS;
+}
+
+/* The game: a finger on a rough plate, and a bell. */
+static asp_scene *scene;
+static asp_renderer *renderer;
+static asp_port *port;
+static uint64_t bell, plate;
+static double time_s;
+
+static void build(double points_hz, asp_port_config *settings) {
+    asp_config config;
+    asp_config_init(&config);
+    config.sample_rate_hz = RATE, config.clock = ASP_CLOCK_EXACT;
+    MUST(asp_build(&config, &scene, &renderer) == ASP_OK);
+    asp_body body;
+    asp_init_body(&body, sizeof body);
+    body.stock = "bar", body.size_m = 0.2;
+    MUST(asp_add_body(scene, &body, &bell) == ASP_OK);
+    asp_surface surface;
+    asp_surface_init(&surface);
+    surface.table = "solid = \"granite\"\nwidth_m = 0.2\nheight_m = 0.2\nrelief_m = 2e-4\n";
+    MUST(asp_add_surface(scene, &surface, &plate) == ASP_OK);
+    asp_port_config_init(settings);
+    settings->kind = ASP_PORT_POINTS, settings->rate_hz = points_hz, settings->holds_s = 1.0;
+    MUST(asp_open_port(scene, settings, &port) == ASP_OK);
+    time_s = 0.0;
+}
+
+static void away(void) {
+    MUST(asp_port_free(port) == ASP_OK && asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+}
+
+static void report(uint32_t kind, double speed_m_s) {
+    asp_event event;
+    asp_init_event(&event, sizeof event);
+    event.kind = kind, event.contact = 1, event.surface = plate, event.actuator = 0;
+    event.uv[0] = fmod(0.1 + speed_m_s * time_s / 0.2, 0.8), event.uv[1] = 0.5;
+    event.velocity_m_s[0] = speed_m_s, event.velocity_m_s[1] = 0.0, event.normal_force_n = 1.0;
+    if (kind == ASP_IMPACT)
+        event.body = bell, event.striker = 0;
+    MUST(asp_report(scene, time_s, &event, 1, sizeof event, NULL) == ASP_OK);
+}
+
+static void render(void) {
+    static float frame[2 * BLOCK];
+    int32_t map[2] = {0, 1};
+    asp_render_interleaved(renderer, frame, 2, BLOCK, map);
+    time_s += BLOCK / RATE;
+}
+
+static void begin(double first_frame_s, int parametric) {
+    memset(&runtime, 0, sizeof runtime);
+    runtime.focused = 1, runtime.parametric = parametric, runtime.session = 3;
+    runtime.first_frame_ns = (XrDuration)(first_frame_s * 1e9), runtime.first_call_s = -1.0;
+}
+
+static double now(double drift) { return 40.0 + time_s * (1.0 + drift); }
+
+/* Strokes that come and go, in a clock that drifts, with hitches of the game, focus lost and a new session. */
+static void frames(uint64_t wanted, double first_frame_s, double drift) {
+    asp_port_config settings;
+    asp_xr_hand hand;
+    build(100.0, &settings);
+    begin(first_frame_s, 1);
+    asp_xr_init(&hand, port, &settings, apply, stop);
+    asp_xr_session(&hand, (XrSession)(uintptr_t)3, (XrAction)(uintptr_t)7, 1);
+    asp_xr_parametric(&hand, runtime.first_frame_ns);
+    hand.full_scale = 0.05;
+    uint64_t unread = 0;
+    for (uint64_t block = 0; runtime.frames < wanted; block++) {
+        int touches = block % 2000 < 1700;
+        if (block % 6 == 0 && touches)
+            report(block % 2000 < 6 ? ASP_BEGIN : ASP_MOVE, 0.12);
+        if (block % 2000 == 1700)
+            report(ASP_END, 0.0);
+        render();
+        runtime.now_s = now(drift);
+        /* The game stands still for 0.3 s, and once for longer than the port holds. */
+        if (block % 5000 > 4880 || (block > 20000 && block < 20600)) {
+            unread++;
+            continue;
+        }
+        if (block % 7000 == 3000)
+            runtime.focused = 0;
+        if (block % 7000 == 3100)
+            runtime.focused = 1;
+        if (block % 9000 == 8000) {
+            /* The session is lost, and 50 blocks later there is another. */
+            runtime.session++, runtime.streams = 0;
+        }
+        if (block % 9000 == 8050)
+            asp_xr_session(&hand, (XrSession)(uintptr_t)runtime.session, (XrAction)(uintptr_t)7, 1);
+        asp_xr_tick(&hand, now(drift));
+        if (runtime.broken) {
+            fprintf(stderr, "frame %llu: %s\n", (unsigned long long)runtime.frames, runtime.rule);
+            exit(1);
+        }
+    }
+    /* Nothing is lost that is not counted. */
+    asp_stats stats;
+    asp_init_stats(&stats, sizeof stats);
+    MUST(asp_get_stats(scene, &stats) == ASP_OK);
+    uint64_t made = (uint64_t)((double)stats.position / RATE * settings.rate_hz);
+    uint64_t told = hand.played + hand.silent + hand.unfocused + hand.refused + hand.dropped;
+    MUST(told <= made + 1 && told + 2 >= made);
+    MUST(runtime.played_amplitude > 0.1);
+    MUST(wanted < 5000 || (hand.silent > 0 && runtime.lasts > 0 && hand.unfocused > 0 && hand.refused > 0 && hand.dropped > 0));
+    printf("%llu frames, %llu points, %llu streams: none refused by a rule; %llu points without focus, %llu without a session, %llu dropped\n",
+           (unsigned long long)runtime.frames, (unsigned long long)hand.played, (unsigned long long)runtime.firsts,
+           (unsigned long long)hand.unfocused, (unsigned long long)hand.refused, (unsigned long long)hand.dropped);
+    away();
+}
+
+static int rising(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* From a report to the call that carries it, in the time of the audio: a game of 60 ticks a second that calls asp_xr_tick each block. */
+static void latency(int parametric) {
+    static double waits_s[200];
+    asp_port_config settings;
+    asp_xr_hand hand;
+    build(200.0, &settings);
+    begin(0.05, parametric);
+    asp_xr_init(&hand, port, &settings, apply, stop);
+    asp_xr_session(&hand, (XrSession)(uintptr_t)3, (XrAction)(uintptr_t)7, 1);
+    if (parametric)
+        asp_xr_parametric(&hand, runtime.first_frame_ns);
+    hand.full_scale = 1e-2;
+    for (int strike = 0; strike < 200; strike++) {
+        /* Until all is silent, then a little more, so that strikes fall anywhere between two points. */
+        for (int block = 0; block < 400 + strike % 7; block++) {
+            render(), runtime.now_s = now(0.0);
+            asp_xr_tick(&hand, now(0.0));
+        }
+        runtime.first_call_s = -1.0;
+        double reported_s = now(0.0);
+        report(ASP_IMPACT, 0.0);
+        for (int block = 0; block < 400 && runtime.first_call_s < 0.0; block++) {
+            render(), runtime.now_s = now(0.0);
+            asp_xr_tick(&hand, now(0.0));
+        }
+        MUST(runtime.first_call_s > 0.0 && runtime.broken == 0);
+        waits_s[strike] = runtime.first_call_s - reported_s;
+    }
+    qsort(waits_s, 200, sizeof *waits_s, rising);
+    printf("%s: from a report to its call %.1f ms at the median, %.1f ms at p99\n", parametric ? "parametric" : "plain",
+           1e3 * waits_s[100], 1e3 * waits_s[198]);
+    MUST(waits_s[198] <= 0.02);
+    MUST(asp_xr_stop(&hand) == XR_SUCCESS);
+    away();
+}
+
+int main(int count, char **words) {
+    uint64_t wanted = count > 1 ? strtoull(words[1], NULL, 10) : 100000;
+    judges();
+    frames(wanted, 0.05, 0.0);
+    frames(wanted / 20, 0.0, 3e-4);
+    frames(wanted / 20, 0.12, -3e-4);
+    latency(1), latency(0);
+    puts("headset: every call keeps the rules");
+    return 0;
+}
