@@ -89,6 +89,7 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
     let written = match (parameter.key, parameter.components) {
         (key, 1) => format!("{key} = {value}"),
         (key @ "v_axis", _) => format!("{key} = [0, {value}, 0]"),
+        (key @ "direction", _) => format!("{key} = [{value}, 0, 0]"),
         (key @ "u_axis", _) => format!("{key} = [{value}, 0, 0]"),
         (key, components) => format!("{key} = [{}]", vec![value; components].join(", ")),
     };
@@ -119,6 +120,7 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
             let other = if of_a_tip { "preset = \"stylus\"\n" } else { "" };
             format!("{}{}{}\n{other}{written}", brackets.0, parameter.table, brackets.1)
         }
+        "pickup" => format!("[[body]]\nname = \"b\"\n[[pickup]]\nname = \"p\"\nbody = \"b\"\n{written}\n"),
         "sand" => in_surface(format!("sand = {{ {written} }}")),
         "sand.layers" => {
             let other = if parameter.key == "from_m" { "hardness = 1.0" } else { "from_m = 0.01" };
@@ -183,7 +185,8 @@ fn the_reader_takes_both_ends_of_every_range_and_refuses_what_is_beyond_in_its_w
         for beyond in [range.low - step, range.high + step, if range.above { range.low } else { f64::NAN }] {
             let value = if beyond.is_nan() && parameter.whole { range.low - step } else { beyond };
             // Of a direction the length counts.
-            let value = if parameter.key.ends_with("_axis") { value.max(0.0) } else { value };
+            let directs = parameter.key.ends_with("_axis") || parameter.key == "direction";
+            let value = if directs { value.max(0.0) } else { value };
             // A seed may be as great as a whole number of a file.
             let Some(outcome) = read(value).filter(|_| parameter.key != "seed" || value < 0.0) else {
                 continue;

@@ -7,7 +7,9 @@ use asperity::{
     Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel, Mode,
     Pickup, PickupQuantity, RigidMotion, SensorProfile, Stock, Surface, SurfaceFrame, Touching,
 };
-use closed_forms::{FREE_BAR, PLATE_M, bar, bar_shape, modes_file, plate_of, plate_orders, plate_shape};
+use closed_forms::{
+    FREE_BAR, PLATE_M, bar, bar_shape, modes_file, plate_of, plate_orders, plate_shape, shapes, sheet,
+};
 use std::f64::consts::TAU;
 
 const RATE_HZ: f64 = 44_100.0;
@@ -156,7 +158,14 @@ fn a_tap_on_a_free_bar_is_read_as_its_closed_form() {
 
 #[test]
 fn a_tap_on_a_plate_held_at_its_edges_is_read_as_its_closed_form() {
-    let hz: Vec<f64> = (0..30).map(plate_hz).collect();
+    // (5, 4) and (3, 5) are one pitch: what is read of it is their sum.
+    let (twin, other) = (22, 26);
+    assert_eq!(plate_orders(twin).map(|x| x as i32), [5, 4]);
+    assert_eq!(plate_orders(other).map(|x| x as i32), [3, 5]);
+    let without = |all: Vec<f64>| -> Vec<f64> {
+        all.into_iter().enumerate().filter(|(m, _)| *m != other).map(|(_, x)| x).collect()
+    };
+    let hz = without((0..30).map(plate_hz).collect());
     let mut worst = 0.0_f64;
     for pair in 0..50 {
         let at = |u: f64, v: f64| [PLATE_M[0] * u, PLATE_M[1] * v, 0.0];
@@ -165,11 +174,11 @@ fn a_tap_on_a_plate_held_at_its_edges_is_read_as_its_closed_form() {
         let body = Body::new(plate_body()).pickup(up(heard));
         let readings = tapped(body, struck, 22_050, 512);
         let found = amplitudes(&readings[0], &hz, DECAY_PER_S);
-        let scale = |m: usize| BLOW_N_S * (TAU * hz[m]).hypot(DECAY_PER_S);
-        let exact: Vec<f64> =
-            (0..30).map(|m| scale(m) * plate_shape(m, struck) * plate_shape(m, heard)).collect();
-        let most: Vec<f64> = (0..30).map(|m| 4.0 * scale(m)).collect();
-        worst = worst.max(worst_db(&found, &exact, &most));
+        let scale = |m: usize| BLOW_N_S * (TAU * plate_hz(m)).hypot(DECAY_PER_S);
+        let one = |m: usize| scale(m) * plate_shape(m, struck) * plate_shape(m, heard);
+        let exact = (0..30).map(|m| one(m) + if m == twin { one(other) } else { 0.0 }).collect();
+        let most = (0..30).map(|m| 4.0 * scale(m)).collect();
+        worst = worst.max(worst_db(&found, &without(exact), &without(most)));
     }
     println!("worst {worst:.3} dB");
     assert!(worst <= 0.5, "{worst} dB");
@@ -232,14 +241,17 @@ fn a_force_that_lasts_moves_a_place_as_the_equation_says() {
 }
 
 #[test]
-fn what_a_finger_holds_is_read_damped() {
+fn a_body_that_a_finger_holds_is_read_as_damped_as_it_is_heard() {
+    // One mode: what is read and what is heard of it differ by a factor.
+    let shapes = shapes(sheet(PLATE_M, [40, 30]), 1, |_| [0.0, 0.0, 1.0], plate_shape);
+    let model = ModalModel::parse(&modes_file(&shapes, plate_hz, DECAY_PER_S)).unwrap();
     let ringing = |held: bool| {
         let mut engine = config(1).build().unwrap();
-        let body = engine.scene.add_body(Body::new(plate_body()).pickup(up([0.12, 0.1, 0.0]))).unwrap();
+        let body = Body::new(model.clone()).pickup(up([0.12, 0.1, 0.0]));
+        let body = engine.scene.add_body(body).unwrap();
         let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
-        let surface =
-            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(0.0).frame(frame).body(body);
-        let surface = engine.scene.add_surface(surface).unwrap();
+        let surface = Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(0.0).frame(frame);
+        let surface = engine.scene.add_surface(surface.body(body)).unwrap();
         engine.scene.report(0.0, tap(body, [0.2, 0.13, 0.0])).unwrap();
         for step in 0..40 {
             let sample = ContactSample::new([0.4, 0.4], 5.0).sliding([0.0, 0.0]);
@@ -250,24 +262,31 @@ fn what_a_finger_holds_is_read_damped() {
             };
             engine.scene.report(f64::from(step) / 60.0, event).unwrap();
         }
-        let reading = read(&mut engine, 1, 26_460, 512);
-        reading[0][22_050..].iter().map(|x| f64::from(*x).powi(2)).sum::<f64>()
+        let (mut audio, mut read) = (vec![0.0; 26_460], vec![0.0; 26_460]);
+        engine.renderer.render_with_pickups(&mut [], &mut [&mut audio], &mut [&mut read]);
+        let energy = |all: &[f32]| all[22_050..].iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
+        [energy(&audio), energy(&read)]
     };
     let (free, held) = (ringing(false), ringing(true));
-    println!("{:.1} dB", 10.0 * (held / free).log10());
-    assert!(held < 0.3 * free);
+    let [heard, read] = [held[0] / free[0], held[1] / free[1]];
+    println!("{:.1} dB heard, {:.1} dB read", 10.0 * heard.log10(), 10.0 * read.log10());
+    assert!(heard < 0.5 && (read / heard - 1.0).abs() < 0.05, "{read} of {heard}");
 }
 
 #[test]
 fn a_body_twice_as_large_is_moved_as_its_mass_says() {
-    let tapped_bar = |size: f64| {
-        let model = bar_body().with_size(size).unwrap();
-        let body = Body::new(model).pickup(up([0.1 * size, 0.015 * size, 0.0]).reading(PickupQuantity::Velocity));
-        let readings = tapped(body, [0.2 * size, 0.015 * size, 0.0], 22_050, 512);
-        amplitudes(&readings[0], &[bar_hz(0) / size], DECAY_PER_S)[0]
+    // Of a tap the speed of each mode falls with the mass, the pitch with the length.
+    let speed = |size: f64| {
+        let model = bar_body().scaled(size, &Material::STEEL).unwrap();
+        let (hz, decay_per_s) = (model.modes[0].frequency_hz, model.modes[0].decay_per_s);
+        let at = |x: f64| [x * size, 0.015 * size, 0.0];
+        let body = Body::new(model).pickup(up(at(0.1)).reading(PickupQuantity::Velocity));
+        let readings = tapped(body, at(0.2), 22_050, 512);
+        let hz: Vec<f64> = (0..5).map(|m| hz * (FREE_BAR[m] / FREE_BAR[0]).powi(2)).collect();
+        amplitudes(&readings[0], &hz, decay_per_s)[0]
     };
-    let ratio = tapped_bar(1.0) / tapped_bar(2.0);
-    assert!((ratio / 8.0 - 1.0).abs() < 0.02, "{ratio}");
+    let ratio = speed(1.0) / speed(2.0);
+    assert!((ratio / 8.0 - 1.0).abs() < 0.05, "{ratio}");
 }
 
 #[test]

@@ -22,6 +22,44 @@ fn a_render_writes_two_float_files_of_equal_length() {
 }
 
 #[test]
+fn pickups_of_a_scene_are_written_a_channel_each() {
+    let scene = Scene::new();
+    let body = TOML.replace("[[body]]\n", "[[body]]\nmass_kg = 0.2\n");
+    let pickup = |name: &str, factor: f64, more: &str| {
+        format!("\n[[pickup]]\nname = \"{name}\"\nbody = \"bar\"\nfactor = {factor}\n{more}\n")
+    };
+    let toml = body + &pickup("mic", 1.0, "") + &pickup("half", 0.5, "quantity = \"velocity\"");
+    scene.write("scene.toml", toml + &pickup("chip", 1.0, "sensor = \"adxl1005\""));
+    let motion = "{\"t\":0.0,\"event\":\"motion\",\"body\":\"bar\",\"gravity_m_s2\":[0,0,-9.81]}\n";
+    scene.write("stroke.jsonl", motion.to_owned() + &impact(0.3));
+    let (status, _, err) = told(&scene.render(&[]));
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(scene.outputs(), ["out.audio.wav", "out.haptic.wav", "out.pickup.wav"]);
+    let (read, heard) = (scene.samples("out.pickup.wav"), scene.samples("out.audio.wav"));
+    assert_eq!(read.len(), 3 * heard.len());
+    // Before the blow there is gravity, and noise behind the sensor, in volts.
+    let at = |s: f64| &read[3 * (s * 44_100.0) as usize..][..3];
+    let before = at(0.2);
+    assert!((before[0] / 9.81 - 1.0).abs() < 1e-3 && before[1] == 0.0, "{before:?}");
+    assert!((before[2] / (9.81 * 2.039e-3) - 1.0).abs() < 0.1, "{before:?}");
+    assert!(at(0.31)[0] != before[0] && at(0.31)[1] != 0.0);
+    let toml = fs::read_to_string(scene.path("scene.toml")).unwrap();
+    for (wrong, words) in [
+        ("body = \"bar\"\nfactor = 1", "pickup 1 \"mic\": body"),
+        ("name = \"half\"", "pickup 2: name: is used twice"),
+        ("sensor = \"adxl1005\"", "pickup \"chip\": sensor: \"ear\" is unknown"),
+    ] {
+        let right = match wrong {
+            "name = \"half\"" => "name = \"mic\"",
+            "sensor = \"adxl1005\"" => "sensor = \"ear\"",
+            _ => "body = \"bell\"\nfactor = 1",
+        };
+        scene.write("scene.toml", toml.replacen(wrong, right, 1));
+        assert_refused(&scene.render(&[]), &[words]);
+    }
+}
+
+#[test]
 fn a_surface_excites_the_strike_position_it_names() {
     let scene = Scene::new();
     let peak = |scene: &Scene| scene.report(&[])["audio_peak"].as_f64().unwrap();

@@ -31,21 +31,20 @@ fn measured(profile: &SensorProfile, rate_hz: f64, hz: f64) -> f64 {
 fn a_filter_has_the_response_of_its_equation() {
     let mut worst = 0.0_f64;
     for rate_hz in [44_100.0, 48_000.0, 96_000.0] {
-        for resonance in [0.02, 0.1, 0.3, 0.45, 0.52, 0.7, 1.0, 2.0] {
+        for resonance in [0.02, 0.1, 0.3, 0.45, 0.48, 0.87, 1.0, 2.0] {
             for quality in [0.7, 5.0, 30.0] {
                 let profile =
                     SensorProfile { resonance_hz: resonance * rate_hz, quality, ..PLAIN };
                 for at in [0.001, 0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.45] {
                     let hz = at * rate_hz;
                     let db = 20.0 * (measured(&profile, rate_hz, hz) / profile.response(hz)).log10();
-                    println!("{rate_hz} {resonance} {quality} {at}: {db:.3}");
                     worst = worst.max(db.abs());
                 }
             }
         }
     }
     println!("worst {worst}");
-    assert!(worst < 0.5, "{worst} dB");
+    assert!(worst < 0.3, "{worst} dB");
 }
 
 #[test]

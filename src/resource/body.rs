@@ -199,7 +199,7 @@ impl BodySlot {
                 };
                 let placed: Vec<_> = pickups.iter().map(gains).collect();
                 let of = (plain.as_slice(), &units[..]);
-                Some(Box::new(Pickups::new(&placed, of, (kernel, &levels), MOST_INPUTS, sample_rate_hz)?))
+                Some(Box::new(Pickups::new(&placed, of, MOST_INPUTS, sample_rate_hz)?))
             }
             _ => None,
         };

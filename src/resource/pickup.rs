@@ -3,29 +3,27 @@
 //!
 //! A mode of unit motion φ̂ moves a place with share s by s φ̂² / ω · e^(−dt) sin ωt m for 1 N·s on an
 //! input of gain 1 (`dsp::modal_bank`; [`GroupOptions::derivative`] makes velocity and acceleration
-//! of it). Levels of what is heard do not count: gains of strikes are taken back.
+//! of it), in `f64` ([`PhasorGroup`]): a measurement. Levels of what is heard do not count: gains of strikes are taken back.
 
 use crate::model::pickup::{Pickup, PickupQuantity, RigidMotion};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{Bank, LONGEST_CONTACT_S};
+use crate::resource::bank::LONGEST_CONTACT_S;
 use crate::resource::holding::HeldModes;
 use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, OnsetSamples, SheddingLevels,
-    design_group, design_groups,
+    GRID_SAMPLES, GroupOptions, Input, LANES, LaneGains, MAX_INPUTS, OnsetSamples, PhasorGroup, PhasorState,
 };
 use asperity_dsp::mode::Mode;
-use asperity_dsp::simd::Level;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Amplitude below which a mode of a pickup rests, m: a thousandth of an atom's width at 1 kHz is
 /// 1e-5 m/s².
-const REST_M: f32 = 1e-16;
+const REST_M: f64 = 1e-16;
 /// ω of a mode whose displacement is so small, rad/s.
-const TYPICAL_OMEGA_RAD_S: f32 = 1e4;
+const TYPICAL_OMEGA_RAD_S: f64 = 1e4;
 
 /// A pickup whose place has been found.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +46,9 @@ pub(crate) struct PickupSlot {
     options: GroupOptions,
     /// s φ̂² of each mode: the speed of the place after 1 N·s on an input of gain 1, m/s.
     speed_m_s: Box<[f64]>,
-    bank: Bank,
+    groups: Box<[(PhasorGroup, PhasorState)]>,
+    /// Amplitude below which its modes rest.
+    rest: f64,
     missing: Box<[OnsetSamples]>,
     early: ImpulseRing<f32>,
     out: [f32; MAX_BLOCK],
@@ -80,12 +80,11 @@ impl Pickups {
     pub(crate) fn new(
         placed: &[(PlacedPickup, Vec<LaneGains>)],
         (modes, units): (&[Mode], &[f64]),
-        (kernel, levels): (Level, &SheddingLevels),
         most_inputs: usize,
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
         let slot = |(placed, gains): &(PlacedPickup, Vec<LaneGains>)| {
-            PickupSlot::new(placed, gains, (modes, units), (kernel, levels), sample_rate_hz)
+            PickupSlot::new(placed, gains, (modes, units), sample_rate_hz)
         };
         let all = placed.iter().map(slot).collect::<Result<_, _>>()?;
         Ok(Self { all, plain: vec![[0.0; MAX_BLOCK]; most_inputs].into() })
@@ -96,12 +95,12 @@ impl Pickups {
     }
 
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.all.iter().all(|slot| slot.bank.active_groups() == 0 && slot.early.is_empty(position))
+        self.all.iter().all(|slot| slot.is_at_rest() && slot.early.is_empty(position))
     }
 
     pub(crate) fn silence(&mut self) {
         for slot in &mut self.all {
-            slot.bank.silence();
+            slot.groups.iter_mut().for_each(|(_, state)| *state = PhasorState::default());
             slot.early.clear();
         }
     }
@@ -143,8 +142,7 @@ impl Pickups {
     ) {
         let Self { all, plain } = self;
         let back = if strike_gain == 0.0 { 0.0 } else { (1.0 / strike_gain - 1.0) as f32 };
-        let mut inputs: [Input<'_>; asperity_dsp::modal_bank::MAX_INPUTS] =
-            [Input { impulses: &[], gains: &[] }; asperity_dsp::modal_bank::MAX_INPUTS];
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
         let mut count = 0;
         for (Heard { input, struck }, plain) in heard.zip(plain.iter_mut()) {
             inputs[count] = match struck.filter(|_| back != 0.0) {
@@ -157,14 +155,9 @@ impl Pickups {
             };
             count += 1;
         }
-        let inputs = match inputs[..count] {
-            [Input { impulses, gains: [] }] => Inputs::One(impulses),
-            _ => Inputs::Placed(&inputs[..count]),
-        };
         for slot in all {
+            slot.ring(position, &inputs[..count], n);
             let out = &mut slot.out[..n];
-            out.fill(0.0);
-            slot.bank.render(position, inputs, out);
             if !slot.early.is_empty(position) {
                 let mut next = slot.early.drain(position);
                 out.iter_mut().for_each(|y| *y += next());
@@ -180,9 +173,9 @@ impl Pickups {
             let speeds = slot.speed_m_s.get(group * LANES..).unwrap_or_default();
             modes.iter_mut().zip(speeds).for_each(|(mode, speed)| *mode = moving(mode, *speed));
             // Modes that could be designed once always can.
-            let designed = design_group(&modes[..held.count], slot.sample_rate_hz, &slot.options);
-            if let Ok(designed) = designed {
-                slot.bank.retune(group, &designed);
+            let designed = PhasorGroup::new(&modes[..held.count], slot.sample_rate_hz, &slot.options);
+            if let (Ok(designed), Some((coefficients, _))) = (designed, slot.groups.get_mut(group)) {
+                *coefficients = designed;
             }
         }
     }
@@ -209,7 +202,6 @@ impl PickupSlot {
         PlacedPickup { pickup, place }: &PlacedPickup,
         gains: &[LaneGains],
         (modes, units): (&[Mode], &[f64]),
-        (kernel, levels): (Level, &SheddingLevels),
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
         let derivative = pickup.quantity.derivative();
@@ -221,16 +213,18 @@ impl PickupSlot {
             modes.iter().zip(&speed_m_s).map(|(mode, speed)| moving(mode, *speed)).collect();
         let missing = modes.iter().map(|mode| OnsetSamples::of_derivative(mode, derivative, sample_rate_hz));
         let missing = missing.collect::<Result<_, _>>()?;
-        let groups = design_groups(&modes, sample_rate_hz, &options).collect::<Result<Box<[_]>, _>>()?;
-        let states = vec![GroupState::REST; groups.len()].into();
-        let rest = REST_M * TYPICAL_OMEGA_RAD_S.powi(i32::from(derivative));
+        let group = |modes: &[Mode]| {
+            PhasorGroup::new(modes, sample_rate_hz, &options).map(|group| (group, PhasorState::default()))
+        };
+        let groups = modes.chunks(LANES).map(group).collect::<Result<_, _>>()?;
         let outward = place.map_or([0.0, 0.0, 1.0], |place| place.direction.map(f64::from));
         let direction = if place.is_some() { outward } else { unit(pickup.direction.unwrap_or(outward)) };
         Ok(Self {
             channel: pickup.channel,
             options,
             speed_m_s,
-            bank: ModalBank::new(kernel, groups, states).in_sections(levels).sleeping_below(rest),
+            groups,
+            rest: REST_M * TYPICAL_OMEGA_RAD_S.powi(i32::from(derivative)),
             missing,
             early: ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz),
             out: [0.0; MAX_BLOCK],
@@ -245,6 +239,27 @@ impl PickupSlot {
             },
             sample_rate_hz,
         })
+    }
+
+    fn is_at_rest(&self) -> bool {
+        self.groups.iter().all(|(_, state)| state.is_at_rest())
+    }
+
+    /// Reads what the modes answer to the inputs of the next `n` samples.
+    fn ring(&mut self, position: u64, inputs: &[Input<'_>], n: usize) {
+        let mut sum = [0.0; MAX_BLOCK];
+        let struck = inputs.iter().any(|input| input.impulses[..n].iter().any(|u| *u != 0.0));
+        let at_grid = (position + n as u64).is_multiple_of(GRID_SAMPLES);
+        for (index, (group, state)) in self.groups.iter_mut().enumerate() {
+            if !struck && state.is_at_rest() {
+                continue;
+            }
+            group.run(index, state, inputs, &mut sum[..n]);
+            if at_grid {
+                group.settle(state, self.rest);
+            }
+        }
+        self.out.iter_mut().zip(sum).for_each(|(out, sum)| *out = sum as f32);
     }
 
     /// Adds what it reads of a stretch.

@@ -72,6 +72,7 @@ mod free_response;
 mod job;
 mod kernel;
 mod onset_correction;
+mod phasor;
 mod reference;
 mod retune;
 mod set;
@@ -89,6 +90,7 @@ pub use design::{
 pub use free_response::FreeResponse;
 pub use job::{Input, MAX_INPUTS};
 pub use onset_correction::{OnsetCorrection, OnsetSamples};
+pub use phasor::{PhasorGroup, PhasorState};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use shedding::{LOUDEST_DB_SPL, MODE_LEVELS, RANKED, SAFETY_DB, SheddingLevels, shedding_order};
 pub use sleep::{SLEEP_AMPLITUDE, ringing_s};

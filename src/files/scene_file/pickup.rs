@@ -3,6 +3,7 @@
 use super::BodyEntry;
 use super::fields::{self, Fields};
 use crate::files::FileError;
+use crate::model::bad_value::BadValue;
 use crate::model::pickup::{Pickup, PickupQuantity};
 use crate::parameters::pickup as of;
 
@@ -36,6 +37,9 @@ pub(super) fn read_all(top: &mut Fields, bodies: &mut [BodyEntry]) -> Result<Vec
             factor: fields.number(&of::FACTOR)?,
             quantity: fields.word("quantity", &PickupQuantity::ALL)?.unwrap_or_default(),
         };
+        if let Err(BadValue { field, value, expected }) = pickup.check() {
+            return Err(fields.refuse(field, format!("{value} is refused"), format!("must be {expected}")));
+        }
         let sensor = fields.text("sensor")?;
         if sensor.is_some() && pickup.quantity != PickupQuantity::Acceleration {
             let right = "leave out quantity, or the sensor, which reads acceleration";
