@@ -46,8 +46,6 @@ pub const DEFAULT_MICRO_RELIEF_M: f64 = 22e-6;
 /// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface
 /// has. **Chosen** within the millimetres to centimetres of machined and polished ones.
 pub const DEFAULT_OUTER_SCALE_M: f64 = 0.01;
-/// Long waves under maps that have none of their own.
-pub const DEFAULT_LONG_WAVES: bool = true;
 /// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would
 /// give contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass
 /// instead.
@@ -134,7 +132,7 @@ impl Surface {
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
             outer_scale_m: DEFAULT_OUTER_SCALE_M,
             micro_relief_octaves_db: [0.0; OCTAVES],
-            long_waves: DEFAULT_LONG_WAVES,
+            long_waves: false,
             friction: None,
             compliance_m_n: 0.0,
             excitation: Excitation::default(),
@@ -264,8 +262,9 @@ impl Surface {
         self
     }
 
-    /// Sets whether long waves lie under a map that has none of its own, as under real ground; a map
-    /// that is meant as it is drawn wants none. Without micro-relief there are none.
+    /// Sets whether long waves lie under a map that has none of its own, as under real ground, for
+    /// tools; not unless told, because a finger's displacement grows by them
+    /// (`docs/lab/feel.md`). Without micro-relief there are none.
     #[must_use]
     pub fn long_waves(mut self, long_waves: bool) -> Self {
         self.long_waves = long_waves;

@@ -10,8 +10,9 @@
 //! mm, 0.12 m/s) answers the map; w: a ground of profile exponent 2.45 to 3 that is flat beyond 30
 //! mm and shakes it as strongly. A map whose strongest octave is its longest keeps what it has.
 //!
-//! Price: up to three slow octaves a sample. Gain, a stylus over five maps of one scale
-//! (`docs/lab/feel.md`): its centroid grows as v^0.4 and not v^0.6, its level as v^0.9 and not v^0.7.
+//! Price: up to three slow octaves a sample, and a finger's displacement channel grows by 1 to 8 dB
+//! at 0.03 to 0.3 m/s, which is why they are off unless a surface asks. Gain, a stylus over five
+//! maps of one scale: its centroid grows as v^0.37 and not v^0.46 (`docs/lab/feel.md`).
 
 use crate::model::surface::Surface;
 use asperity_dsp::fractal_noise::{LONGEST_CELL_M, OCTAVES};
@@ -33,11 +34,9 @@ const TOOL_HZ: f64 = 71.0;
 const QUALITY: f64 = 0.52;
 const BALL_M: f64 = 1.6e-3;
 const SPEED_M_S: f64 = 0.12;
-/// Share of an octave's power that is in its own differences, in those of the next coarser one and
-/// in those of coarser ones: the mean of sin⁸(π λ₀/2λ) over an octave.
-const OF_OWN: f64 = 0.71;
-const OF_NEXT: f64 = 0.08;
-const OF_FINER: f64 = 0.27;
+/// Shares of an octave's power in its own differences and in those of the next coarser octave, the
+/// second and all further: the mean of sin⁸(π λ₀/2λ) over an octave of λ₀.
+const SHARES: [f64; 4] = [0.71, 0.08, 0.36, 0.27];
 /// Curvature of an octave that a ball just follows, times its radius (`dsp::fractal_noise`).
 const FOLLOWED: f64 = 0.63;
 
@@ -65,15 +64,14 @@ pub(crate) fn under(surface: &mut Surface, properties: &Properties) -> [f64; OCT
 /// Rms of the octaves of which the differences have these mean squares, m: what finer waves have in
 /// the differences of a coarser octave is taken off, from the finest on.
 fn octaves_m(mean_squares_m2: &[f64]) -> Vec<f64> {
-    let mut rms_m = vec![0.0; mean_squares_m2.len()];
-    let (mut next_m2, mut finer_m2) = (0.0, 0.0);
-    for (rms_m, mean_square_m2) in rms_m.iter_mut().zip(mean_squares_m2).rev() {
-        let own_m2 = f64::max(0.0, mean_square_m2 - OF_NEXT * next_m2 - OF_FINER * finer_m2) / OF_OWN;
-        finer_m2 += next_m2;
-        next_m2 = own_m2;
-        *rms_m = own_m2.sqrt();
+    let count = mean_squares_m2.len();
+    let mut powers_m2 = vec![0.0; count];
+    for octave in (0..count).rev() {
+        let share = |finer: usize| SHARES[(finer - octave).min(SHARES.len() - 1)];
+        let finer_m2: f64 = (octave + 1..count).map(|finer| share(finer) * powers_m2[finer]).sum();
+        powers_m2[octave] = f64::max(0.0, mean_squares_m2[octave] - finer_m2) / SHARES[0];
     }
-    rms_m
+    powers_m2.into_iter().map(f64::sqrt).collect()
 }
 
 /// Waves above the strongest of a map's octaves.
@@ -104,12 +102,14 @@ fn felt_m_s2(wavelength_m: f64, rms_m: f64) -> f64 {
 /// the local relief (`surface::local_relief`).
 fn mean_square_m2(surface: &mut Surface, octave: usize) -> f64 {
     const TAPS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
-    let lag_m = 0.5 * wavelength_m(octave);
+    let half_m = 0.5 * wavelength_m(octave);
     let mut out = SurfaceBlock::default();
     let mut sum = 0.0;
     for place in 0..PLACES {
         // Places of Roberts' sequence, which leaves no gaps and no rows.
         let n = place as f64 + 1.0;
+        // All lags of the octave, so that no line fills a coarser one.
+        let lag_m = half_m * libm::exp2((n * 0.618_033_988_749_894_9).fract() - 0.5);
         let mut at_m = [[0.0; 2]; TAPS.len()];
         for (tap, at_m) in at_m.iter_mut().enumerate() {
             *at_m = [
@@ -149,7 +149,8 @@ mod tests {
         let wave = |i: usize| (2.0 * PI * i as f64 / 1024.0 * (SIDE_M / wavelength_m).round()).sin();
         let raster = Raster::from_fn(1024, 1024, |x, y| 0.5 * (wave(x) + wave(y)));
         let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: peak_m };
-        Surface::from_map(HeightMap::new(&raster, extent, Wrap::Repeat).unwrap()).unwrap()
+        let map = HeightMap::new(&raster, extent, Wrap::Repeat).unwrap();
+        Surface::from_map(map).unwrap().long_waves(true)
     }
 
     fn waves(mut surface: Surface) -> [f64; OCTAVES] {
@@ -164,7 +165,8 @@ mod tests {
         let strong = waves(map(1e-3, 2e-6));
         assert!((strong[3] / weak[3] - 2.0).abs() < 1e-6, "{strong:?}");
         // One that a ball cannot follow shakes it no more.
-        assert_eq!(waves(map(1e-3, 1e-3)), waves(map(1e-3, 2e-3)));
+        let [large, larger] = [1e-3, 2e-3].map(|peak_m| waves(map(1e-3, peak_m))[3]);
+        assert!(larger < 1.8 * large && large < 100.0 * weak[3], "{large} m, {larger} m");
     }
 
     #[test]
@@ -173,6 +175,6 @@ mod tests {
         assert_eq!(waves(map(0.03, 1e-4)), none);
         assert_eq!(waves(map(1e-3, 1e-4).long_waves(false)), none);
         assert_eq!(waves(map(1e-3, 1e-4).micro_relief_m(0.0)), none);
-        assert_eq!(waves(Surface::flat(0.1, 0.1).unwrap()), none);
+        assert_eq!(waves(Surface::flat(0.1, 0.1).unwrap().long_waves(true)), none);
     }
 }

@@ -40,7 +40,7 @@ pub struct SurfaceEntry {
     pub outer_scale_m: Option<f64>,
     /// Gains of the overlay's octaves over its law, coarsest first, dB.
     pub micro_relief_octaves_db: Option<[f64; OCTAVES]>,
-    /// Long waves under a map that has none of its own; none = the engine's default.
+    /// Long waves under a map that has none of its own; none = no.
     pub long_waves: Option<bool>,
     /// Continuation beyond the edge.
     pub wrap: Wrap,

@@ -53,7 +53,7 @@ pub(super) fn scene(found: &StrokeSurface, probe: &NamedProbe, map: Option<&Map>
          [[body]]\nname = \"body\"\n{body}\n\n\
          [[surface]]\nname = \"stroked\"\nbody = \"body\"\n{source}\
          width_m = {side_m:?}\nheight_m = {side_m:?}\nroughness = {:?}\nmicro_relief_m = {:?}\nouter_scale_m = {OUTER_SCALE_M:?}\n\
-         micro_relief_octaves_db = [{}]\nlong_waves = false\n{friction}{compliance}\n\
+         micro_relief_octaves_db = [{}]\n{friction}{compliance}\n\
          [probe]\n{}\n\
          [[actuator]]\noutput = \"acceleration\"\nfull_scale = 1.0\nhighpass_hz = 0.0\nlimit = false\n",
         found.relief.roughness,
