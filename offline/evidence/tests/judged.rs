@@ -10,7 +10,7 @@ use asperity_evidence::observer::{constants, second};
 use asperity_evidence::plates::{
     CONDITIONS, PLATES, Table, against_itself, judge, lot, material, pascals, plate,
 };
-use asperity_evidence::reliefs::{Relief, Shape};
+use asperity_evidence::reliefs::{Relief, SHAPES, Shape};
 use asperity_surface::raster::Raster;
 use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 
@@ -119,9 +119,11 @@ fn pieces() -> Vec<Vec<Raster>> {
         let piece = |n: usize| Raster::from_fn(SIDE, SIDE, |x, y| relief.height(x + 37 * n, y + 23 * n));
         (0..4).map(|n| whole(piece(n))).collect()
     };
-    let mut all: Vec<Vec<Raster>> = SolidMaterial::SEVEN.iter().map(solid).collect();
+    // Stretched from 0 to 1, granite is pebbles.
+    let solids = SolidMaterial::SEVEN.iter().filter(|material| **material != SolidMaterial::Granite);
+    let mut all: Vec<Vec<Raster>> = solids.map(solid).collect();
     all.extend([0.2, 0.5, 0.8].map(brownian));
-    all.extend([Shape::Spheres, Shape::Quads].map(relief));
+    all.extend(SHAPES.map(relief));
     all
 }
 

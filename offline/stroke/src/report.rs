@@ -61,7 +61,7 @@ pub struct Octave {
     pub rms_m: f64,
     /// Standard error of sampling and of the probe's constants, dB.
     pub rms_se_db: f64,
-    /// That of sampling, dB.
+    /// Standard error of sampling alone, dB.
     pub sampling_se_db: f64,
 }
 

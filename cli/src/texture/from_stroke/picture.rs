@@ -53,8 +53,8 @@ fn spectra(found: &StrokeSurface, group: usize, (low, high): (f64, f64)) -> Pane
     let recorded: Vec<[f64; 2]> = own().map(|level| [level.1, level.2]).collect();
     let played: Vec<[f64; 2]> = own().map(|level| [level.1, level.3]).collect();
     let of = &found.groups[group];
-    let title = format!("{:.0} mm/s, {:.2} N: third octaves", 1e3 * of.speed_m_s, of.force_n);
-    let axis = Axis::new("density, dB", "").range(low, high);
+    let title = format!("{:.0} mm/s, {:.1} N", 1e3 * of.speed_m_s, of.force_n);
+    let axis = Axis::new("third octaves, dB", "").range(low, high);
     Panel::new(title, Axis::log("frequency", "Hz"), axis)
         .with(Layer::line("recorded", palette::AUDIO, Series::Points(recorded)))
         .with(Layer::line("of the surface", palette::HAPTIC, Series::Points(played)))

@@ -55,8 +55,7 @@ pub fn six_plates() -> Result<Found, String> {
         each.collect::<Vec<_>>().join("; ")
     };
     let sentence = format!(
-        "Printed are colours: every plate above 0.60, 0.85 on average, most with both senses. First observer: {}. Second, whose ear \
-         has rhythm and whose hand knows its speed: {}. Plates in the order {}.",
+        "Printed are colours: every plate above 0.60, 0.85 on average, most with both senses. First observer: {}. Second, with rhythm, speed and force: {}. Plates in the order {}.",
         of("first"),
         of("second"),
         PLATES.join(", ")
@@ -170,8 +169,8 @@ pub fn right_names() -> Result<Found, String> {
         ours.insert(round.to_owned(), shares.to_vec());
     }
     let sentence = format!(
-        "Right names out of five, on average: people 2.0 on 80 mm and 2.4 on 40 mm; the observer {:.1} and {:.1}. It forgets \
-         nothing and no answer of its leans on the one before, so that its shares lie closer together than people's.",
+        "Right names out of five, on average: people 2.0 on 80 mm and 2.4 on 40 mm; the observer {:.1} and {:.1}. Its answers are \
+         independent of each other, so that its shares lie closer together than people's.",
         means[0], means[1]
     );
     Ok((printed, ours, sentence))
