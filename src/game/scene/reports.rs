@@ -183,7 +183,7 @@ impl Scene {
         }
     }
 
-    fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
+    pub(super) fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
         if self.clock.is_live() {
             within("time_s", time_s, limits::LIVE_TIME_S)?;
             return Ok(());
@@ -343,7 +343,7 @@ impl Scene {
         field.place(impact.at_m?, impact.direction)
     }
 
-    fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
+    pub(super) fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
         self.to_audio.send(message).map_err(|_| Refusal::QueueFull)
     }
 }
