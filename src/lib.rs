@@ -114,6 +114,7 @@ pub use model::bad_value::BadValue;
 pub use model::body::Body;
 pub use model::bus::{AudioBus, BusId, BusLevels, MAX_BUSES};
 pub use model::click::Click;
+pub use model::clip::Clip;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::diffuse::{Diffuse, DiffuseBand, DiffusePart};

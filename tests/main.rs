@@ -8,6 +8,7 @@ mod blocks;
 mod buses;
 mod callbacks;
 mod changes;
+mod clips;
 #[path = "common/closed_forms.rs"]
 mod closed_forms;
 mod common;

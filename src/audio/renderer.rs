@@ -5,6 +5,7 @@
 //! of [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same
 //! bits.
 
+mod clips;
 mod contacts;
 mod hand_over;
 mod messages;
@@ -41,6 +42,7 @@ use asperity_dsp::hertz::KERNEL_LATENCY;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_surface::height_field::MAX_BLOCK;
+use clips::Clips;
 use contacts::SilentContact;
 use outputs::{Bus, HapticChannel, Mix, clear_beyond};
 use pickups::PickupChannel;
@@ -80,6 +82,7 @@ pub struct Renderer {
     buses: Vec<Bus>,
     pickups: Vec<PickupChannel>,
     blows: Blows,
+    clips: Clips,
     outlets: Outlets,
     kernel: Level,
     governor: Governor,
@@ -152,6 +155,7 @@ impl Renderer {
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             pickups: PickupChannel::all(config)?,
             blows: Blows::new(rate),
+            clips: Clips::new(config.actuators.len(), rate),
             outlets: Outlets::new(config.max_ports, config.actuators.len()),
             kernel,
             governor: Governor::new(config.shed_load, rate),
@@ -395,6 +399,7 @@ impl Renderer {
     fn tidy(&mut self) {
         self.show_levels();
         self.outlets.tidy(&mut self.to_game);
+        self.clips.tidy(self.position, &mut self.to_game);
         self.voices_used.retain(|voice| self.voices[voice].phase != VoiceState::Free);
         for at in 0..self.voices_used.len() {
             let index = self.voices_used.at(at);

@@ -3,6 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 mod bodies;
+mod clips;
 mod levelled;
 mod named;
 mod pickups;

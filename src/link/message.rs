@@ -8,6 +8,7 @@ use crate::model::pickup::RigidMotion;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::body::BodySlot;
+use crate::resource::clip::PlayingClip;
 use crate::resource::probe::PreparedProbe;
 use crate::resource::strike_point::StrikePoint;
 use crate::resource::stroking::Stroking;
@@ -56,6 +57,8 @@ pub(crate) enum Message {
     SetBodySend { slot: usize, bus: usize, gain: f64 },
     /// A body is louder or softer from now on.
     SetBodyGain { slot: usize, gain: f64 },
+    /// A clip plays on a haptic channel from its own sample on.
+    PlayClip(Box<PlayingClip>),
     /// Everything that leaves sounds at this speed and pitch from now on.
     SetPitch(f64),
     /// Everything that leaves fades to nothing, or comes back.
@@ -101,4 +104,7 @@ pub(crate) enum Retired {
     Outlet(Box<dyn Outlet>),
     #[expect(dead_code, reason = "it is freed with the message and never looked at")]
     Change(Box<dyn Any + Send + Sync>),
+    /// A clip that is over.
+    #[expect(dead_code, reason = "it is freed with the message and never looked at")]
+    Clip(Box<PlayingClip>),
 }

@@ -109,6 +109,8 @@ counters! {
     /// Impacts dropped because they came sooner after one that was as strong than the least time of
     /// their body ([`Body::least_time_s`](crate::Body::least_time_s)).
     too_soon,
+    /// Clips that were not played because 32 played already.
+    clips_dropped,
     /// Strikes with a name that were reported again after they had sounded, or as they wait: each
     /// sounds once.
     repeated,

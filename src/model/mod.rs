@@ -5,6 +5,7 @@ pub(crate) mod bad_value;
 pub(crate) mod body;
 pub(crate) mod bus;
 pub(crate) mod click;
+pub(crate) mod clip;
 pub(crate) mod clock_mode;
 pub(crate) mod closest_point;
 pub(crate) mod config;

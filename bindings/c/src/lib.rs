@@ -20,6 +20,7 @@
 #![allow(non_camel_case_types, reason = "C names")]
 
 pub mod body;
+pub mod clip;
 pub mod config;
 mod entry;
 pub mod event;

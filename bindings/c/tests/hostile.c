@@ -140,6 +140,8 @@ static void nulls(void) {
     REFUSED(asp_report_named(scene, 0, 1, NULL, sizeof event), ASP_BAD_ARGUMENT, "event");
     REFUSED(asp_withdraw(scene, 1, NULL), ASP_BAD_ARGUMENT, "waited");
     REFUSED(asp_withdraw(NULL, 1, &number), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_play_clip(NULL, 0, 0, NULL, 0, 8000, 1, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_play_clip(scene, 0, 0, NULL, 5, 8000, 1, 1), ASP_BAD_ARGUMENT, "samples");
     REFUSED(asp_set_haptic_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_bus_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
     double level;
@@ -324,6 +326,11 @@ static void ids_and_numbers(void) {
     REFUSED(asp_add_body(scene, &loud, &id), ASP_REFUSED, "strike_gain");
     REFUSED(asp_set_time_scale(scene, -1), ASP_REFUSED, "time_scale");
     REFUSED(asp_bend_time(scene, 3), ASP_REFUSED, "time_scale");
+    float hum[4] = {0.1f, 0.2f, NAN, 0.0f};
+    REFUSED(asp_play_clip(scene, 1, 0, hum, 4, 8000, 1, 1), ASP_REFUSED, "samples");
+    REFUSED(asp_play_clip(scene, 1, 0, hum, 2, 8000, 1, 3), ASP_REFUSED, "ducking");
+    REFUSED(asp_play_clip(scene, 1, 70000, hum, 2, 8000, 1, 1), ASP_UNKNOWN, "actuator");
+    MUST(asp_play_clip(scene, 1, 0, hum, 2, 8000, 1, 1) == ASP_OK);
     asp_event blow;
     asp_init_event(&blow, sizeof blow);
     blow.kind = ASP_END;

@@ -9,7 +9,7 @@ use asperity::live::channel_map::{ChannelMap, Interleaver};
 use asperity::load::Overrides;
 use asperity::surface::sand::SandThread;
 use asperity::surface::sand::SandWorker;
-use asperity::{ClockMode, ContactEvent, Engine, Scene};
+use asperity::{ChannelId, Clip, ClockMode, ContactEvent, Engine, Scene};
 use numpy::{PyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -135,6 +135,21 @@ impl LiveScene {
             game.scene.report_named(line.t, name, impact).map_err(refused)?;
         }
         Ok(())
+    }
+
+    /// Plays a clip on a haptic channel.
+    #[allow(clippy::too_many_arguments, reason = "they are those of the method")]
+    fn play_clip(
+        &self,
+        t: f64,
+        channel: u16,
+        samples: Vec<f32>,
+        rate_hz: f64,
+        gain: f64,
+        ducking: f64,
+    ) -> PyResult<()> {
+        let clip = Clip { samples, rate_hz, gain, ducking };
+        held(&self.inner)?.scene.play_clip(t, ChannelId(channel), &clip).map_err(refused)
     }
 
     /// Takes a strike with a name back.

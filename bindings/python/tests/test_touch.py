@@ -371,3 +371,16 @@ def test_a_bell_in_slow_motion_rings_lower_and_a_strike_with_a_name_once(tmp_pat
     for scale in (0.5, 1.0, 1.5):
         hz, stats = rings(scale)
         assert hz == pytest.approx(800 * scale, rel=1e-3) and stats["impacts"] == 1
+
+
+def test_a_clip_plays_on_its_channel_beside_nothing(tmp_path):
+    (tmp_path / "scene.toml").write_text("[[actuator]]\nfull_scale = 1e-4\n[[actuator]]\nfull_scale = 1e-4\n")
+    scene = asp.Scene(tmp_path / "scene.toml", sr=48_000, clock="exact")
+    wave = 0.5 * np.sin(2 * np.pi * 170 * np.arange(1600) / 8000)
+    scene.play_clip(1, wave, gain=0.5, t=0.1, sr=8000)
+    _, haptic = scene.renderer.render(24_000)
+    assert np.abs(haptic[0]).max() == 0
+    assert np.abs(haptic[1][4_900:14_000]).max() == pytest.approx(0.25, rel=1e-3)
+    assert np.abs(haptic[1][:4_790]).max() == 0
+    with pytest.raises(ValueError, match="ducking"):
+        scene.play_clip(0, wave, t=0.2, sr=8000, ducking=2)

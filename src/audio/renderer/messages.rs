@@ -135,6 +135,13 @@ impl Renderer {
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
             Message::SetBodySend { slot, bus, gain } => self.bodies[slot].send_to(bus, gain),
             Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::PlayClip(clip) => {
+                if let Err(clip) = self.clips.add(clip, self.position) {
+                    Counters::add(&self.counters.clips_dropped, 1);
+                    // There is room: the message waited for it.
+                    let _ = self.to_game.send(Retired::Clip(clip));
+                }
+            }
             Message::SetPitch(scale) => self.tape.set_scale(scale),
             Message::Mute(muted) => self.muted = muted,
             Message::Pause(paused) => {

@@ -226,6 +226,7 @@ impl Renderer {
             let Mix { haptic: own, master, mastered, .. } = &mut *self.mix;
             let mut out = haptic.get_mut(index);
             let block = place(inner, (at, n), &mut out, own);
+            self.clips.mix(index, self.position, n, channel);
             channel.run(block);
             if *mastered {
                 weigh(block, master);

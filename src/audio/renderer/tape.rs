@@ -10,10 +10,8 @@
 //! over scale at most. Back at scale 1, p glides onto a whole sample within [`GLIDE`] samples, what
 //! lies ahead is played out, and the tape stands still again.
 
-use std::sync::LazyLock;
+use crate::resource::sinc::{self, LOBES};
 
-/// Zero crossings of the kernel to either side.
-const LOBES: usize = 16;
 /// Largest scale.
 pub(crate) const FASTEST: f64 = 2.0;
 /// Reach of the kernel at the largest scale, samples.
@@ -22,33 +20,6 @@ const REACH: usize = LOBES * FASTEST as usize;
 const KEPT: usize = 128;
 /// Samples in which the position becomes whole again.
 const GLIDE: f64 = 512.0;
-/// Points of the kernel between two zero crossings.
-const POINTS: usize = 512;
-/// Shape of the Kaiser window: side lobes of −90 dB.
-const BETA: f64 = 9.0;
-
-/// One side of the kernel.
-static KERNEL: LazyLock<Box<[f32]>> = LazyLock::new(|| {
-    let bessel = |x: f64| {
-        let term = |t: &mut f64, n: i32| {
-            *t *= (x / (2.0 * f64::from(n))).powi(2);
-            Some(*t)
-        };
-        1.0 + (1..60).scan(1.0, term).sum::<f64>()
-    };
-    let at = |point: usize| {
-        let u = point as f64 / POINTS as f64;
-        let phase = std::f64::consts::PI * u;
-        let sinc = if point.is_multiple_of(POINTS) {
-            f64::from(u8::from(point == 0))
-        } else {
-            libm::sin(phase) / phase
-        };
-        let edge = (1.0 - (u / LOBES as f64).powi(2)).max(0.0).sqrt();
-        (sinc * bessel(BETA * edge) / bessel(BETA)) as f32
-    };
-    (0..=LOBES * POINTS + 1).map(at).collect()
-});
 
 /// Samples of every channel, and the place from which they are read.
 pub(crate) struct Tape {
@@ -68,7 +39,7 @@ pub(crate) struct Tape {
 
 impl Tape {
     pub(crate) fn new(channels: usize, written: u64) -> Self {
-        LazyLock::force(&KERNEL);
+        sinc::prepare();
         Self {
             channels: vec![[0.0; KEPT]; channels].into(),
             written,
@@ -153,7 +124,7 @@ impl Tape {
         let cutoff = 1.0 / self.scale.max(1.0);
         for (i, weight) in self.weights[..2 * reach].iter_mut().enumerate() {
             let distance = (i as f64 + 1.0 - reach as f64 - self.beyond).abs() * cutoff;
-            *weight = cutoff as f32 * kernel(distance);
+            *weight = cutoff as f32 * sinc::kernel(distance);
         }
         let first = (self.whole + 1).wrapping_sub(reach as u64) as usize;
         for (index, channel) in self.channels.iter().enumerate() {
@@ -197,11 +168,4 @@ fn output<'a>(
         i if i < split[1] => audio.get_mut(i - split[0]).map(|out| &mut **out),
         i => pickups.get_mut(i - split[1]).map(|out| &mut **out),
     }
-}
-
-fn kernel(distance: f64) -> f32 {
-    let place = distance * POINTS as f64;
-    let whole = (place as usize).min(LOBES * POINTS);
-    let [a, b] = [KERNEL[whole], KERNEL[whole + 1]];
-    a + (b - a) * (place - whole as f64).min(1.0) as f32
 }

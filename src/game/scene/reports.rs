@@ -348,7 +348,7 @@ impl Scene {
         field.place(impact.at_m?, impact.direction)
     }
 
-    fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
+    pub(super) fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
         self.to_audio.send(message).map_err(|_| Refusal::QueueFull)
     }
 }

@@ -212,6 +212,7 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_time_scale(IntPtr scene, double scale);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_bend_time(IntPtr scene, double scale);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_report_named(IntPtr scene, double timeS, ulong name, ref Event e, uint size);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_play_clip(IntPtr scene, double timeS, uint channel, [In] float[] samples, uint count, double rateHz, double gain, double ducking);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_withdraw(IntPtr scene, ulong name, out uint waited);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_haptic_gain(IntPtr scene, uint channel, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_bus_gain(IntPtr scene, uint bus, double gain);
@@ -534,6 +535,12 @@ namespace Asperity
         public void ReportNamed(double timeS, ulong name, Event strike)
         {
             Native.Must(Native.asp_report_named(handle, timeS, name, ref strike, (uint)Marshal.SizeOf(typeof(Event))));
+        }
+
+        /// <summary>Plays a waveform on a haptic channel beside strokes, which have the gain ducking (0 to 1) meanwhile.</summary>
+        public void PlayClip(double timeS, uint channel, float[] samples, double rateHz, double gain = 1.0, double ducking = 1.0)
+        {
+            Native.Must(Native.asp_play_clip(handle, timeS, channel, samples, (uint)samples.Length, rateHz, gain, ducking));
         }
 
         /// <summary>Takes a strike with a name back; true where it waited and does not sound.</summary>

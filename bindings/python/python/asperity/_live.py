@@ -150,6 +150,19 @@ class Scene:
         told = {"event": "impact", "body": body, "speed_m_s": speed_m_s, "mass_kg": mass_kg, "radius_m": radius_m, "striker": striker}
         self._native.report_named(name, _contacts.lines([{"t": t, **told, **keys}]))
 
+    def play_clip(
+        self, channel: int, clip: npt.ArrayLike, gain: float = 1.0, t: float = 0.0, *, sr: float, ducking: float = 1.0
+    ) -> None:
+        """Plays a waveform (n,) of rate `sr` on a haptic channel from game time `t` on; 1 is the channel's full scale.
+
+        Strokes and blows of the channel have the gain `ducking`, 0 to 1, meanwhile. The user's gain, the equaliser and the limiters act on
+        the sum; the ends are faded over 2 ms. 32 play at once. An `asperity.haptics.Clip` has its waveform as `left`, at its `sr`.
+        """
+        samples = np.asarray(clip, dtype=np.float32)
+        if samples.ndim != 1:
+            raise ValueError(f"clip: has {samples.ndim} dimensions; must be (n,)")
+        self._native.play_clip(t, channel, samples.tolist(), sr, gain, ducking)
+
     def withdraw(self, name: int) -> bool:
         """Takes a strike with a name back; True where it waited and does not sound."""
         return self._native.withdraw(name)
