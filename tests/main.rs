@@ -54,6 +54,7 @@ mod only_what_is_needed;
 mod own_sources;
 mod parameters;
 mod parts;
+mod pickups;
 mod ports;
 mod pressed_harder;
 #[path = "../examples/real_input/profile.rs"]

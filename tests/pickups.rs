@@ -74,7 +74,7 @@ fn up(at_m: [f64; 3]) -> Pickup {
 fn amplitudes(read: &[f32], hz: &[f64], decay_per_s: f64) -> Vec<f64> {
     let n = hz.len();
     let (mut normal, mut right) = (vec![vec![0.0; 2 * n]; 2 * n], vec![0.0; 2 * n]);
-    for (i, y) in read.iter().enumerate().skip(64) {
+    for (i, y) in read.iter().enumerate().skip(64).step_by(2) {
         let t = i as f64 / RATE_HZ;
         let row: Vec<f64> = hz
             .iter()
@@ -110,17 +110,17 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// Greatest error of the modes of a tap, dB, of those that are not weaker than 3 % of the mode's
-/// greatest; those must be within 3 % of it.
+/// Greatest error of the modes of a tap, dB. One that is weaker than 3 % of its greatest must be
+/// within 3 % of that.
 fn worst_db(found: &[f64], exact: &[f64], most: &[f64]) -> f64 {
     let mut worst = 0.0_f64;
     for ((found, exact), most) in found.iter().zip(exact).zip(most) {
         let (exact, weak) = (exact.abs(), 0.03 * most);
-        let db = (20.0 * (found / exact).log10()).abs();
-        if db > 0.5 && (found - exact).abs() > weak {
-            println!("{found} of {exact}, at most {most}");
+        if exact < weak {
+            assert!((found - exact).abs() <= weak, "{found} of {exact}, at most {most}");
+        } else {
+            worst = worst.max((20.0 * (found / exact).log10()).abs());
         }
-        worst = worst.max(if (found - exact).abs() <= weak { db.min(0.5) * 0.0 } else { db });
     }
     worst
 }
@@ -166,12 +166,13 @@ fn a_tap_on_a_plate_held_at_its_edges_is_read_as_its_closed_form() {
         all.into_iter().enumerate().filter(|(m, _)| *m != other).map(|(_, x)| x).collect()
     };
     let hz = without((0..30).map(plate_hz).collect());
+    let plate = plate_body();
     let mut worst = 0.0_f64;
     for pair in 0..50 {
         let at = |u: f64, v: f64| [PLATE_M[0] * u, PLATE_M[1] * v, 0.0];
         let struck = at(even(pair, 0.618_034), even(pair, 0.754_878));
         let heard = at(even(pair, 0.819_173), even(pair, 0.671_044));
-        let body = Body::new(plate_body()).pickup(up(heard));
+        let body = Body::new(plate.clone()).pickup(up(heard));
         let readings = tapped(body, struck, 22_050, 512);
         let found = amplitudes(&readings[0], &hz, DECAY_PER_S);
         let scale = |m: usize| BLOW_N_S * (TAU * plate_hz(m)).hypot(DECAY_PER_S);
@@ -186,13 +187,13 @@ fn a_tap_on_a_plate_held_at_its_edges_is_read_as_its_closed_form() {
 
 #[test]
 fn a_tap_here_is_read_there_as_one_there_is_read_here() {
-    let mut worst = 0.0_f64;
+    let (mut worst, plate) = (0.0_f64, plate_body());
     for pair in 0..50 {
         let at = |u: f64, v: f64| [PLATE_M[0] * u, PLATE_M[1] * v, 0.0];
         let here = at(even(pair, 0.618_034), even(pair, 0.754_878));
         let there = at(even(pair, 0.819_173), even(pair, 0.671_044));
-        let one = tapped(Body::new(plate_body()).pickup(up(there)), here, 4410, 512);
-        let other = tapped(Body::new(plate_body()).pickup(up(here)), there, 4410, 512);
+        let one = tapped(Body::new(plate.clone()).pickup(up(there)), here, 4410, 512);
+        let other = tapped(Body::new(plate.clone()).pickup(up(here)), there, 4410, 512);
         let peak = one[0].iter().fold(0.0_f32, |most, x| most.max(x.abs()));
         let apart = one[0].iter().zip(&other[0]).fold(0.0_f32, |most, (a, b)| most.max((a - b).abs()));
         worst = worst.max(f64::from(apart / peak));
@@ -223,9 +224,7 @@ fn readings_do_not_depend_on_blocks_or_levels_and_leave_the_sound_alone() {
 }
 
 #[test]
-fn a_force_that_lasts_moves_a_place_as_the_equation_says() {
-    // A finger strokes a flat plate: its landing is a step of force. After the ring has gone, the
-    // plate is bent as by that force at rest.
+fn a_tap_moves_a_place_no_further_than_its_modes_can() {
     let mut engine = config(1).build().unwrap();
     let pickup = up([0.12, 0.1, 0.0]).reading(PickupQuantity::Displacement);
     let body = engine.scene.add_body(Body::new(plate_body()).pickup(pickup)).unwrap();
@@ -275,7 +274,7 @@ fn a_body_that_a_finger_holds_is_read_as_damped_as_it_is_heard() {
 
 #[test]
 fn a_body_twice_as_large_is_moved_as_its_mass_says() {
-    // Of a tap the speed of each mode falls with the mass, the pitch with the length.
+    // A tap moves each mode as slowly as its mass says.
     let speed = |size: f64| {
         let model = bar_body().scaled(size, &Material::STEEL).unwrap();
         let (hz, decay_per_s) = (model.modes[0].frequency_hz, model.modes[0].decay_per_s);

@@ -777,7 +777,7 @@ int32_t asp_find(struct asp_scene *scene, uint32_t kind, const char *name, uint6
 /// Reads the text of a contact log (JSON Lines; docs/formats/log.md) into `events` and `times_s`,
 /// both of `capacity`, with the ids that the scene's names stand for. `count` is how many events
 /// the log holds: call once with a capacity of 0 to learn it. `size` is sizeof(asp_event). A log
-/// that holds edits of a scene is refused.
+/// that holds edits of a scene, or motions of bodies, is refused.
 int32_t asp_read_log(struct asp_scene *scene,
                      const char *text,
                      struct asp_event *events,

@@ -27,7 +27,7 @@ use core::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Frequencies beside 0 where the magnitude is exact, over the Nyquist frequency.
 const MATCHED: [f64; 2] = [0.65, 0.88];
-/// The same without poles.
+/// Frequencies of a filter without poles.
 const MATCHED_TAPS: [f64; 2] = [0.55, 0.86];
 
 /// A sensor as its data sheet describes it.

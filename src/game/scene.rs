@@ -100,7 +100,7 @@ pub struct Scene {
     motions: Motions,
     /// Surface of each contact, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
-    /// When each body was last told to move as a whole, s, and how fast it turned, rad/s.
+    /// Time of each body's newest motion, s, and how fast it turned, rad/s.
     moved: HashMap<BodyId, (f64, [f64; 3])>,
     /// The newest impact that sounded on each body that has a least time: when, in samples, and its
     /// impulse.

@@ -88,7 +88,7 @@ pub enum Refusal {
     },
 }
 
-/// What is wrong with a pickup.
+/// Fault of a pickup.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PickupProblem {
@@ -143,7 +143,7 @@ pub enum AddError {
     Pickup {
         /// Its channel, from 1.
         number: usize,
-        /// What is wrong, and what would be right.
+        /// Fault of it, and what would be right.
         problem: PickupProblem,
     },
     /// There is no such audio bus.

@@ -58,7 +58,7 @@ pub(crate) struct PickupSlot {
     sample_rate_hz: f64,
 }
 
-/// What a pickup reads of its body as a whole: a straight line from report to report.
+/// Reading of the body's own motion: a straight line from report to report.
 struct Rigid {
     at_m: [f64; 3],
     direction: [f64; 3],
@@ -68,7 +68,7 @@ struct Rigid {
     left: u32,
 }
 
-/// What the bank of a body hears, and what of it is a strike with the gain that it is heard with.
+/// Input of the body's bank, and what of it is a strike with the gain that it is heard with.
 pub(crate) struct Heard<'a> {
     pub(crate) input: Input<'a>,
     pub(crate) struck: Option<&'a [f32]>,

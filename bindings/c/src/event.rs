@@ -242,7 +242,7 @@ impl asp_event {
             }
             ContactEvent::End { contact } => (own.kind, own.contact) = (ASP_END, contact.0),
             ContactEvent::Impact(impact) => own.strike(impact),
-            // Motions have a call of their own.
+            // Refused by those who call this.
             ContactEvent::Motion { body, .. } => own.body = body.to_bits(),
         }
         own

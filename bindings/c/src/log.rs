@@ -12,7 +12,7 @@ use std::ffi::c_char;
 /// Reads the text of a contact log (JSON Lines; docs/formats/log.md) into `events` and `times_s`,
 /// both of `capacity`, with the ids that the scene's names stand for. `count` is how many events
 /// the log holds: call once with a capacity of 0 to learn it. `size` is sizeof(asp_event). A log
-/// that holds edits of a scene is refused.
+/// that holds edits of a scene, or motions of bodies, is refused.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_read_log(
     scene: *mut asp_scene,
@@ -40,9 +40,12 @@ pub unsafe extern "C" fn asp_read_log(
         let unknown = |error: LogError| Failure::new(ASP_UNKNOWN, error.in_text(text, "log"));
         log.check_names(&half.names).map_err(unknown)?;
         for (index, line) in log.lines.iter().enumerate() {
-            if matches!(line.event, LogEvent::Edit(_)) {
+            if matches!(line.event, LogEvent::Edit(_) | LogEvent::Motion { .. }) {
                 let right = "replay it with `asperity render`";
-                let what = format!("log: line {} edits the scene, which no event can say", index + 1);
+                let what = format!(
+                    "log: line {} edits the scene or moves a body, which no event can say",
+                    index + 1
+                );
                 return Err(Failure::new(ASP_FILE, format!("{what}; {right}")));
             }
             let event = line.event.resolve(&half.names).map_err(|error| Failure::new(ASP_UNKNOWN, error))?;

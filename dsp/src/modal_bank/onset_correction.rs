@@ -64,7 +64,7 @@ impl OnsetSamples {
     }
 
     /// One mode of a bank that sounds as so many time derivatives ([`GroupOptions::derivative`]).
-    /// What passes at once stays as wide as the ring's kernel.
+    /// The share that passes at once stays as wide as the ring's kernel.
     ///
     /// # Errors
     /// Names the field that is out of range.

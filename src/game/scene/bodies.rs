@@ -152,7 +152,7 @@ impl Scene {
         let sends = body.sends;
         let strike_gain = within("strike_gain", level.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
-        // What nobody hears may be what a pickup reads.
+        // A pickup may read what nobody hears.
         let audible = self.config.culling.filter(|_| rested.is_none() && body.pickups.is_empty());
         let audible = audible.map(|culling| model.audible(rate, &culling));
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
