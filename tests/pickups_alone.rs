@@ -1,3 +1,0 @@
-#[path = "common/closed_forms.rs"]
-mod closed_forms;
-mod pickups;
