@@ -1,6 +1,7 @@
 //! Authored clips beside strokes on a haptic channel.
 
 use crate::common;
+use crate::counting::heap_operations;
 
 use asperity::{
     ActuatorSettings, ChannelId, Clip, Config, ContactEvent, ContactId, ContactSample, Engine, Renderer,
@@ -163,4 +164,21 @@ fn a_clip_that_is_none_is_refused_by_name() {
     }
     scene.play_clip(1.0, ChannelId(0), &good).unwrap();
     assert!(scene.play_clip(0.5, ChannelId(0), &good).unwrap_err().to_string().starts_with("time_s"));
+}
+
+#[test]
+fn clips_and_bent_time_touch_no_heap_on_the_audio_half() {
+    let (mut scene, mut renderer, surface) = engine(1);
+    stroke(&mut scene, surface);
+    for n in 0..40 {
+        scene
+            .play_clip(0.001 * f64::from(n), ChannelId(0), &Clip::new(hum(90.0, 0.05, 8000.0), 8000.0))
+            .unwrap();
+    }
+    scene.set_time_scale(0.4, true).unwrap();
+    let (mut haptic, mut audio) = ([0.0; 256], [0.0; 256]);
+    let mut block = || renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+    assert_eq!(heap_operations(|| (0..60).for_each(|_| block())), 0);
+    scene.set_time_scale(1.0, true).unwrap();
+    assert_eq!(heap_operations(|| (0..60).for_each(|_| block())), 0);
 }
