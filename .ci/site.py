@@ -45,8 +45,7 @@ def staged(text, page):
 def stage(folder):
     shutil.copytree(ROOT / "docs", folder)
     for page in folder.rglob("*.md"):
-        if page.name != "SUMMARY.md":
-            page.write_text(staged(page.read_text(), ROOT / "docs" / page.relative_to(folder)))
+        page.write_text(staged(page.read_text(), ROOT / "docs" / page.relative_to(folder)))
     (folder / "README.md").write_text(staged((ROOT / "README.md").read_text(), ROOT / "README.md"))
 
 

@@ -46,7 +46,8 @@ pub struct Render {
     pub audio: Vec<Vec<f32>>,
     /// One channel an actuator, in order.
     pub haptic: Vec<Vec<f32>>,
-    /// One channel of [pickups](crate::Config::pickups), in order: SI units, or volts of its sensor.
+    /// One channel of [pickups](crate::Config::pickups), in order: SI units, or volts of its
+    /// sensor.
     pub pickup: Vec<Vec<f32>>,
     /// Statistics.
     pub stats: Stats,

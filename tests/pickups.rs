@@ -31,7 +31,7 @@ fn bar_body() -> ModalModel {
 }
 
 fn plate_body() -> ModalModel {
-    ModalModel::parse(&modes_file(&plate_of([80, 60]), plate_hz, DECAY_PER_S)).unwrap()
+    ModalModel::parse(&modes_file(&plate_of([160, 120]), plate_hz, DECAY_PER_S)).unwrap()
 }
 
 fn tap(body: BodyId, at_m: [f64; 3]) -> ContactEvent {

@@ -1,5 +1,5 @@
-//! Strikes with a name under rollback: a game that predicts reports ticks again, takes back what did
-//! not happen, and hears each strike once.
+//! Strikes with a name under rollback: a game that predicts reports ticks again, takes back what
+//! did not happen, and hears each strike once.
 
 use crate::common;
 

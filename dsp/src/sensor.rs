@@ -16,9 +16,9 @@
 //! 2016), so that nothing is warped; changed: these are 0 and [`MATCHED`], where the greatest error
 //! is least, instead of 0, the resonance and the Nyquist frequency (1 to 5 dB off). A resonance
 //! beyond the Nyquist frequency has the three taps of the numerator alone. Measured in
-//! `dsp/tests/sensor.rs`, up to 0.45 of the rate: within 0.3 dB of the equation for resonances up to
-//! 0.48 and from 0.87 of the rate on; within 2 dB from 0.6 on; between 0.48 and 0.6 a resonance of Q
-//! above 2 is up to 10 dB off in the last octave.
+//! `dsp/tests/sensor.rs`, up to 0.45 of the rate: within 0.3 dB of the equation for resonances up
+//! to 0.48 and from 0.87 of the rate on; within 2 dB from 0.6 on; between 0.48 and 0.6 a resonance
+//! of Q above 2 is up to 10 dB off in the last octave.
 
 use crate::DesignError;
 use crate::limits::sensor as limits;

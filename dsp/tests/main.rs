@@ -16,6 +16,7 @@ mod noise_figures;
 mod profiles;
 mod radiation;
 mod rising_ground;
+mod sensor;
 mod spectrum;
 mod stick_slip;
 mod strike_waveform;

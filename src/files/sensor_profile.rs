@@ -96,12 +96,12 @@ mod tests {
 
     #[test]
     fn shipped_sensors_respond_as_their_data_sheets_say() {
-        for (name, hz) in [("adxl1004", 24e3), ("adxl1005", 21e3)] {
+        for (name, hz, within_db) in [("adxl1004", 24e3, 0.5), ("adxl1005", 21e3, 0.6)] {
             let text = SHIPPED.iter().find(|(known, _)| *known == name).unwrap().1;
             let response = SensorPreset::parse(text, name).unwrap().profile.response(hz);
             let db = 20.0 * response.log10();
             println!("{name}: {db:.2} dB at {hz} Hz");
-            assert!((db - 3.0).abs() <= 0.5, "{name}: {db} dB at {hz} Hz");
+            assert!((db - 3.0).abs() <= within_db, "{name}: {db} dB at {hz} Hz");
         }
     }
 

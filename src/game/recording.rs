@@ -27,7 +27,7 @@ struct Waiting {
     epoch: u64,
     /// Position of the audio then, s: what was late already waits for the next block all the same.
     told_s: f64,
-    /// Of a strike with a name; 0 = none.
+    /// Ticket of a strike with a name; 0 = none.
     ticket: u32,
 }
 

@@ -32,7 +32,7 @@ pub(crate) enum Message {
         holder: Option<usize>,
         felt: Option<Felt>,
         pulse: HertzPulse,
-        /// Of a strike with a name; 0 = it has none.
+        /// Ticket of a strike with a name; 0 = it has none.
         ticket: u32,
     },
     /// A body moves as a whole, over so many samples from what was told before; how much faster it

@@ -6,9 +6,9 @@
 //! ```
 //! Scanned and made textures hold one scale of a millimetre or so and nothing above it, where real
 //! ground goes on: a tool's vibration then moves with the speed as its one line does, and grows too
-//! little. L: acceleration, m/s², with which a tool on such springs (f₀ 71 Hz, Q 0.52, a ball of 1.6
-//! mm, 0.12 m/s) answers the map; w: a ground of profile exponent 2.45 to 3 that is flat beyond 30
-//! mm and shakes it as strongly. A map whose strongest octave is its longest keeps what it has.
+//! little. L: acceleration, m/s², with which a tool on such springs (f₀ 71 Hz, Q 0.52, a ball of
+//! 1.6 mm, 0.12 m/s) answers the map; w: a ground of profile exponent 2.45 to 3 that is flat beyond
+//! 30 mm and shakes it as strongly. A map whose strongest octave is its longest keeps what it has.
 //!
 //! Price: up to three slow octaves a sample, and a finger's displacement channel grows by 1 to 8 dB
 //! at 0.03 to 0.3 m/s, which is why they are off unless a surface asks. Gain, a stylus over five

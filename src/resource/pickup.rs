@@ -1,9 +1,10 @@
 //! Pickups of a body, as the audio half owns them: the body's modes once more for each, with what
 //! reaches the body as inputs, sounding as the motion of the pickup's place.
 //!
-//! A mode of unit motion φ̂ moves a place with share s by s φ̂² / ω · e^(−dt) sin ωt m for 1 N·s on an
-//! input of gain 1 (`dsp::modal_bank`; [`GroupOptions::derivative`] makes velocity and acceleration
-//! of it), in `f64` ([`PhasorGroup`]): a measurement. Levels of what is heard do not count: gains of strikes are taken back.
+//! A mode of unit motion φ̂ moves a place with share s by s φ̂² / ω · e^(−dt) sin ωt m for 1 N·s on
+//! an input of gain 1 (`dsp::modal_bank`; [`GroupOptions::derivative`] makes velocity and
+//! acceleration of it), in `f64` ([`PhasorGroup`]): a measurement. Levels of what is heard do not
+//! count: gains of strikes are taken back.
 
 use crate::model::pickup::{Pickup, PickupQuantity, RigidMotion};
 use crate::model::stamp::Stamp;

@@ -8,8 +8,8 @@ use asperity::{ChannelId, Clip, Refusal};
 /// Most samples of a clip.
 pub const ASP_MAX_CLIP_SAMPLES: u32 = 1 << 26;
 
-/// Plays a clip on a haptic channel from game time `time_s` on: `count` samples at `rate_hz`, 1 = the
-/// channel's full scale, times `gain`; strokes and blows have the gain `ducking` (0 to 1)
+/// Plays a clip on a haptic channel from game time `time_s` on: `count` samples at `rate_hz`, 1 =
+/// the channel's full scale, times `gain`; strokes and blows have the gain `ducking` (0 to 1)
 /// meanwhile. It is added before the user's gain, the equaliser and the limiters; its ends are
 /// faded over 2 ms. 32 play at once, more are dropped. The samples are copied.
 #[unsafe(no_mangle)]

@@ -198,9 +198,9 @@ impl AsperityWorld {
         self.join_surface(&surface, body, &name.to_string())
     }
 
-    /// Adds what touches, a table as a scene file's `[probe]` (`preset = "rigid"`, `face_m = 0.4` for
-    /// a crate), and gives its id for `report_begin`; best before the surfaces, which get ready for
-    /// it. 0, and an error, where it is refused.
+    /// Adds what touches, a table as a scene file's `[probe]` (`preset = "rigid"`, `face_m = 0.4`
+    /// for a crate), and gives its id for `report_begin`; best before the surfaces, which get ready
+    /// for it. 0, and an error, where it is refused.
     #[func]
     fn add_probe(&mut self, table: GString, name: GString) -> i64 {
         let added = self.tried("add_probe", |running| {

@@ -46,6 +46,8 @@ pub struct LiveRenderer {
     #[pyo3(get)]
     audio_buses: usize,
     #[pyo3(get)]
+    pickup_channels: usize,
+    #[pyo3(get)]
     latency_samples: usize,
     #[pyo3(get)]
     kernel: &'static str,
@@ -87,6 +89,7 @@ pub fn open(
         sr: renderer.sample_rate_hz(),
         haptic_channels: renderer.haptic_channels(),
         audio_buses: renderer.audio_buses(),
+        pickup_channels: renderer.pickup_channels(),
         latency_samples: renderer.latency_samples(),
         kernel: renderer.kernel().name(),
         inner: Mutex::new(Some(Interleaver::new(renderer, map))),
@@ -215,6 +218,18 @@ impl LiveRenderer {
             renderer.render(&mut haptic, &mut audio);
         });
         Ok((pictures::planar(py, audio)?, pictures::planar(py, haptic)?))
+    }
+
+    /// The next frames of the pickups: (channels, frames).
+    fn render_pickups<'py>(&self, py: Python<'py>, frames: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let mut read = vec![vec![0.0; frames]; self.pickup_channels];
+        let mut held = held(&self.inner)?;
+        let renderer = held.as_mut().ok_or_else(gone)?.renderer();
+        py.detach(|| {
+            let mut read: Vec<&mut [f32]> = read.iter_mut().map(Vec::as_mut_slice).collect();
+            renderer.render_with_pickups(&mut [], &mut [], &mut read);
+        });
+        pictures::planar(py, read)
     }
 
     /// Fills (frames, device channels) with the next frames.

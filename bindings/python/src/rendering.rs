@@ -105,6 +105,7 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     log.check_names(&engine.names).map_err(in_text)?;
     let rate_hz = engine.renderer.sample_rate_hz();
     let channels = engine.renderer.haptic_channels() + engine.renderer.audio_buses();
+    let channels = channels + engine.renderer.pickup_channels();
     check_length(&name, (log.end_s() + file.tail_s) * rate_hz, channels, rate_hz)?;
     check_force_rate(wanted.force_rate_hz, rate_hz)?;
     let kernel = engine.renderer.kernel().name();
@@ -193,6 +194,7 @@ fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("force", force.map(|rows| rows.arrays(py)).transpose()?)?;
     result.set_item("audio", pictures::planar(py, render.audio)?)?;
     result.set_item("haptic", pictures::planar(py, render.haptic)?)?;
+    result.set_item("pickup", pictures::planar(py, render.pickup)?)?;
     Ok(result)
 }
 

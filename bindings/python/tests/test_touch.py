@@ -384,3 +384,17 @@ def test_a_clip_plays_on_its_channel_beside_nothing(tmp_path):
     assert np.abs(haptic[1][:4_790]).max() == 0
     with pytest.raises(ValueError, match="ducking"):
         scene.play_clip(0, wave, t=0.2, sr=8000, ducking=2)
+
+
+def test_a_pickup_reads_a_body_at_a_place_in_its_unit(tmp_path):
+    body = asp.Body.stock("plate", 0.14, "steel")
+    pickup = {"name": "mic", "body": body.name, "at_m": [0.02, 0.01, 0.0]}
+    scene = asp.SceneFile(asp.Solid("granite").on(body), pickups=[pickup], audio={"gain": 1.0}, actuators=[{"full_scale": 1e-4}])
+    blow = {"t": 0.0, "event": "impact", "body": body.name, "speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "striker": "steel"}
+    take = asp.render(scene, [blow])
+    assert take.pickup.shape == (1, take.audio.shape[-1]) and take.pickup.dtype == np.float32
+    assert rms(take.pickup) > 0.1
+    assert [path.rsplit(".", 2)[1] for path in take.save(tmp_path / "take")] == ["audio", "haptic", "pickup"]
+    softer = asp.render(scene, [blow | {"speed_m_s": 0.25}])
+    assert 1.5 < rms(take.pickup) / rms(softer.pickup) < 3.0
+    assert asp.render(asp.SceneFile(asp.Solid("granite")), []).pickup.shape == (0, 0)

@@ -11,7 +11,8 @@
 //!
 //! The sum of the same terms as [`ModalBank`](super::ModalBank)'s, at ten times its price: struck
 //! here and read there it is the same to 1e-7 of the peak as struck there and read here, where the
-//! bank's states round to 2e-6. A retuned mode goes on at its amplitude and phase because z is both.
+//! bank's states round to 2e-6. A retuned mode goes on at its amplitude and phase because z is
+//! both.
 
 use super::LANES;
 use super::design::{GroupOptions, Pole};

@@ -419,7 +419,7 @@ fn quantities_are_written_as_a_name_a_table_or_a_list() {
     for (haptic, part) in [
         ("haptic = []", "output.haptic: is empty"),
         ("haptic = [\"displacement\", \"displacement\"]", "displacement stands there twice"),
-        ("haptic = [\"force\"]", "output.haptic.output: \"force\" is unknown"),
+        ("haptic = [\"torque\"]", "output.haptic.output: \"torque\" is unknown"),
         ("haptic = 3", "haptic must be a quantity"),
         ("force = { rate_hz = 0 }", "output.force.rate_hz: 0 is refused"),
         ("force = { rate_hz = 44100 }", "output.force.rate_hz: 44100 is refused"),

@@ -30,9 +30,9 @@ impl AcCoupling {
         Self { feel, force: State::default(), last_felt: 0.0 }
     }
 
-    /// Displacement or acceleration of the pad about the mean surface, or its force, which the actuator is to
-    /// reproduce, and the alternating contact force as impulses, N·s; `step_s` is the time of a
-    /// sample, 0 for a force that is not to sound.
+    /// Displacement or acceleration of the pad about the mean surface, or its force, which the
+    /// actuator is to reproduce, and the alternating contact force as impulses, N·s; `step_s` is
+    /// the time of a sample, 0 for a force that is not to sound.
     pub(super) fn run(
         &mut self,
         output: &ContactOutput,
@@ -76,8 +76,8 @@ impl AcCoupling {
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
-    /// Tests whether nothing of a pad at this row is felt to move. Without a high-pass a resting pad
-    /// is felt as its constant displacement, or force.
+    /// Tests whether nothing of a pad at this row is felt to move. Without a high-pass a resting
+    /// pad is felt as its constant displacement, or force.
     pub(super) fn feels_still(&self, output: &ContactOutput, row: &PadSample) -> bool {
         let resting = if output.quantity() == Quantity::Force { row.contact_force_n } else { row.pad_m };
         self.last_felt.abs() < still(output) || (self.last_felt - resting).abs() < still(output)

@@ -135,7 +135,7 @@ const SLIPS: [(&str, &str, &str); 32] = [
     (
         "\"begin\"",
         "\"jump\"",
-        "event: \"jump\" is unknown; must be \"begin\", \"move\", \"end\" or \"impact\"",
+        "event: \"jump\" is unknown; must be \"begin\", \"move\", \"end\", \"impact\" or \"motion\"",
     ),
     ("\"begin\"", "7", "event: 7 is unknown; must be \"begin\", "),
     ("\"t\":0.0,", "", "t: is missing; write \"t\":"),

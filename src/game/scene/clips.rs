@@ -12,8 +12,8 @@ impl Scene {
     /// Plays a clip on a haptic channel from game time `time_s` on, beside what is rendered: it is
     /// added to the channel's sum, so the user's gain, the equaliser and the limiters act on both.
     /// Its ends are faded over 2 ms. At most 32 play at once; more are dropped and counted in
-    /// [`Stats::clips_dropped`](crate::Stats::clips_dropped). Recordings hold no clips, and a change
-    /// of the sample rate ends them.
+    /// [`Stats::clips_dropped`](crate::Stats::clips_dropped). Recordings hold no clips, and a
+    /// change of the sample rate ends them.
     ///
     /// ```
     /// use asperity::{ChannelId, Clip, Config, Engine};

@@ -116,8 +116,8 @@ impl Scene {
     /// forces and blows stay what they are.
     ///
     /// With `bend_pitch` all that leaves is a tape that runs at that speed: a bell that rings at
-    /// 800 Hz rings at 400 Hz, twice as long, at scale 0.5, and so does what is felt. Ports go on in
-    /// the game's time. It is for both clocks.
+    /// 800 Hz rings at 400 Hz, twice as long, at scale 0.5, and so does what is felt. Ports go on
+    /// in the game's time. It is for both clocks.
     ///
     /// # Errors
     /// When the scale is not in 0.01–100, with `bend_pitch` not in 0.1–2, or the queue is full.

@@ -1,4 +1,5 @@
-//! PCM port: the samples of a haptic channel, an audio bus or a pickup, exactly as they leave the engine.
+//! PCM port: the samples of a haptic channel, an audio bus or a pickup, exactly as they leave the
+//! engine.
 
 use super::Feed;
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};

@@ -36,7 +36,8 @@ fn scene_of_gltf(data: &[u8]) {
             document: path.to_owned(),
             output: output.clone(),
             material,
-            // A mesh's modes take seconds, where the linear algebra is not optimised half a minute; meshes have doors of their own.
+            // A mesh's modes take seconds, where the linear algebra is not optimised half a minute;
+            // meshes have doors of their own.
             surfaces_only: true,
             unwrap: UnwrapOptions::default(),
             json: false,

@@ -2,8 +2,8 @@
 //! and the probe for that length.
 //!
 //! A crate on one point falls into every joint of a brick floor; its face spans them
-//! (`asperity::Probe::face_m`). Each length is a probe of the scene and one more copy of each map, so
-//! there are two.
+//! (`asperity::Probe::face_m`). Each length is a probe of the scene and one more copy of each map,
+//! so there are two.
 
 use asperity::{AddError, ProbeId, Scene, THING_PROBE, thing_with_face};
 use glam::Vec3;
@@ -44,7 +44,7 @@ impl Points {
 /// Probes of things that name none: with a tip, and with each of the faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probes {
-    /// What touches with a tip.
+    /// Toucher with a tip.
     pub tip: ProbeId,
     faces: [ProbeId; FACES_M.len()],
 }

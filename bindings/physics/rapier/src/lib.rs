@@ -95,8 +95,8 @@ impl Adapter {
         })
     }
 
-    /// The probe of things that touch with a tip and are not told otherwise; its name in a recording
-    /// is the game's choice.
+    /// The probe of things that touch with a tip and are not told otherwise; its name in a
+    /// recording is the game's choice.
     #[must_use]
     pub fn rigid_probe(&self) -> ProbeId {
         self.probes.tip

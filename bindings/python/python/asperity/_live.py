@@ -51,6 +51,15 @@ class Renderer:
         audio, haptic = self._native.render(n)
         return (audio[0] if len(audio) == 1 else audio), haptic
 
+    @property
+    def pickup_channels(self) -> int:
+        """How many channels of pickups there are."""
+        return self._native.pickup_channels
+
+    def pickup(self, n: int) -> npt.NDArray[np.float32]:
+        """The next `n` samples of the pickups alone: (channels, n) float32 in m/s², m/s or m, behind a sensor in volts."""
+        return self._native.render_pickups(n)
+
     def channels(self, text: str) -> int:
         """Says what goes where in `render_into`: "audio=0,1 haptic=2,3" (the default with as many haptics as there are); returns how
         many channels a device must have. Raises ValueError where two signals share a channel."""
@@ -119,6 +128,10 @@ class Scene:
     def move(self, t: float, contact: int, uv: Sequence[float], normal_force_n: float, **keys: Any) -> None:
         """A contact goes on. Further keys: velocity_m_s, gain, importance, at_m, depth_m, slip_m_s, roll_radius_m."""
         self.report(t, {"event": "move", "contact": contact, "uv": list(uv), "normal_force_n": normal_force_n, **keys})
+
+    def motion(self, t: float, body: str, **keys: Any) -> None:
+        """A body moves as a whole, in its own axes: acceleration_m_s2, gravity_m_s2, angular_velocity_rad_s, centre_m."""
+        self.report(t, {"event": "motion", "body": body, **keys})
 
     def end(self, t: float, contact: int) -> None:
         """A contact lifts off."""

@@ -124,6 +124,7 @@ def _take(made: dict[str, Any], force_rate: float | None) -> Take:
         trace=_rows(made["trace"], sr, _TRACE),
         force=_rows(made["force"], force_rate or 1.0, _FORCE),
         sand=made["sand"],
+        pickup=made["pickup"],
     )
 
 

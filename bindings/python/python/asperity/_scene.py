@@ -269,6 +269,7 @@ class SceneFile:
 
     surfaces: one or several. bodies: those that no surface lies on. probe: a preset of `names_of("probe")` or a table of fields.
     actuators: tables of [[actuator]], in channel order. audio: a table of [audio], or a list of buses. tail_s: ring-out, s.
+    pickups: tables of [[pickup]], in channel order (`Take.pickup`).
     Names are checked where they stand, everything else when it is rendered or opened, in the engine's words.
     """
 
@@ -278,6 +279,7 @@ class SceneFile:
     actuators: Sequence[Mapping[str, Any]] | None = None
     audio: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None
     tail_s: float | None = None
+    pickups: Sequence[Mapping[str, Any]] | None = None
 
     PATH = "scene.toml"
 
@@ -304,6 +306,8 @@ class SceneFile:
             tables["actuator"] = [dict(actuator) for actuator in self.actuators]
         if self.audio is not None:
             tables["audio"] = dict(self.audio) if isinstance(self.audio, Mapping) else [dict(bus) for bus in self.audio]
+        if self.pickups is not None:
+            tables["pickup"] = [dict(pickup) for pickup in self.pickups]
         if self.tail_s is not None:
             tables["tail_s"] = self.tail_s
         return tables

@@ -21,7 +21,8 @@ class Take:
     `stats["full_scale"]` says: a sample times it is in m or m/s². sr: samples a second. stats: what the engine counted, and the levels in
     use. trace, force: structured arrays where they were asked for, with the columns of `asperity render --trace` and `--force`: `x_n` is the
     force on the finger along u, `y_n` along v (friction points against the motion), `z_n` out of the surface, in N. sand: heights in
-    metres (rows, columns) of each surface of sand after the last contact.
+    metres (rows, columns) of each surface of sand after the last contact. pickup: float32 (channels, samples), a channel a pickup of the
+    scene in m/s², m/s or m, behind a sensor in volts; (0, 0) where there is none.
     """
 
     audio: npt.NDArray[np.float32]
@@ -31,6 +32,7 @@ class Take:
     trace: npt.NDArray[np.void] | None = None
     force: npt.NDArray[np.void] | None = None
     sand: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
+    pickup: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0), np.float32))
 
     def __repr__(self) -> str:
         return f"Take(audio={self.audio.shape}, haptic={self.haptic.shape}, sr={self.sr:g}, {self.duration_s:.2f} s)"
@@ -49,14 +51,17 @@ class Take:
         return np.ascontiguousarray(np.concatenate(parts[which]).T)
 
     def save(self, stem: str | os.PathLike[str]) -> list[str]:
-        """Writes STEM.audio.wav and STEM.haptic.wav, 32-bit float, as the program does; returns their paths.
+        """Writes STEM.audio.wav, STEM.haptic.wav and, with pickups, STEM.pickup.wav, 32-bit float, as the program does; returns their paths.
 
         Nothing is left under these names where one cannot be written.
         """
-        paths = [f"{os.fspath(stem)}.{part}.wav" for part in ("audio", "haptic")]
+        signals = {"audio": np.atleast_2d(self.audio), "haptic": self.haptic}
+        if len(self.pickup):
+            signals["pickup"] = self.pickup
+        paths = [f"{os.fspath(stem)}.{part}.wav" for part in signals]
         parts = [f"{path}.part" for path in paths]
         try:
-            for part, samples in zip(parts, (np.atleast_2d(self.audio), self.haptic), strict=True):
+            for part, samples in zip(parts, signals.values(), strict=True):
                 _native.write_wav(part, np.ascontiguousarray(samples), self.sr)
             for part, path in zip(parts, paths, strict=True):
                 os.replace(part, path)
