@@ -67,7 +67,7 @@ fn thirty_two_clips_beside_a_stroke_are_their_sum() {
             .map(|n| {
                 let at = i as f64 - (starts_s(n) * RATE_HZ).round();
                 let edge = 0.002 * RATE_HZ;
-                let inside = at >= 0.0 && at < 9600.0;
+                let inside = (0.0..9600.0).contains(&at);
                 let from_end = at.min(9599.0 - at);
                 let rise = if from_end < edge {
                     0.5 - 0.5 * (std::f64::consts::PI * (from_end + 0.5) / edge).cos()

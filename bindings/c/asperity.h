@@ -692,8 +692,8 @@ int32_t asp_set_body_send(struct asp_scene *scene, uint64_t id, uint32_t bus, do
 /// Makes a body louder or softer, linear, 0 to 1000, without a step.
 int32_t asp_set_body_gain(struct asp_scene *scene, uint64_t id, double gain);
 
-/// Plays a clip on a haptic channel from game time `time_s` on: `count` samples at `rate_hz`, 1 = the
-/// channel's full scale, times `gain`; strokes and blows have the gain `ducking` (0 to 1)
+/// Plays a clip on a haptic channel from game time `time_s` on: `count` samples at `rate_hz`, 1 =
+/// the channel's full scale, times `gain`; strokes and blows have the gain `ducking` (0 to 1)
 /// meanwhile. It is added before the user's gain, the equaliser and the limiters; its ends are
 /// faded over 2 ms. 32 play at once, more are dropped. The samples are copied.
 int32_t asp_play_clip(struct asp_scene *scene,

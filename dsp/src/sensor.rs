@@ -13,7 +13,7 @@
 //!
 //! Digital form: each second-order factor has the poles of the equation and a numerator whose
 //! magnitude is exact at three frequencies (M. Vicanek, "Matched second order digital filters",
-//! 2016), so that nothing is warped; changed: these are 0 and [`MATCHED`], where the greatest error
+//! 2016), so that nothing is warped; changed: these are 0 and `MATCHED`, where the greatest error
 //! is least, instead of 0, the resonance and the Nyquist frequency (1 to 5 dB off). A resonance
 //! beyond the Nyquist frequency has the three taps of the numerator alone. Measured in
 //! `dsp/tests/sensor.rs`, up to 0.45 of the rate: within 0.3 dB of the equation for resonances up

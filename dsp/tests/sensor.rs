@@ -33,8 +33,7 @@ fn a_filter_has_the_response_of_its_equation() {
     for rate_hz in [44_100.0, 48_000.0, 96_000.0] {
         for resonance in [0.02, 0.1, 0.3, 0.45, 0.48, 0.87, 1.0, 2.0] {
             for quality in [0.7, 5.0, 30.0] {
-                let profile =
-                    SensorProfile { resonance_hz: resonance * rate_hz, quality, ..PLAIN };
+                let profile = SensorProfile { resonance_hz: resonance * rate_hz, quality, ..PLAIN };
                 for at in [0.001, 0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.45] {
                     let hz = at * rate_hz;
                     let db = 20.0 * (measured(&profile, rate_hz, hz) / profile.response(hz)).log10();
@@ -59,8 +58,7 @@ fn a_band_is_three_decibels_down_at_its_ends() {
 
 #[test]
 fn noise_has_its_density_and_readings_stop_and_step() {
-    let profile =
-        SensorProfile { noise_m_s2_rthz: 2e-3, clip_m_s2: 10.0, gain_v_per_m_s2: 0.5, ..PLAIN };
+    let profile = SensorProfile { noise_m_s2_rthz: 2e-3, clip_m_s2: 10.0, gain_v_per_m_s2: 0.5, ..PLAIN };
     let mut converter = Converter::new(&profile, 7, 16e3);
     let n = 100_000;
     let square: f64 = (0..n).map(|_| f64::from(converter.tick(0.0)).powi(2)).sum();

@@ -222,6 +222,7 @@ impl Renderer {
 
     /// Index of the next sample to be rendered.
     #[must_use]
+    #[expect(clippy::misnamed_getters, reason = "outside, samples are counted as they leave")]
     pub fn position(&self) -> u64 {
         self.given
     }

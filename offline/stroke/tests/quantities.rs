@@ -87,7 +87,7 @@ fn friction_is_the_drag_over_the_pressing_force_forth_and_back() {
     for way in [1.0, -1.0] {
         let drag: Vec<f64> =
             (0..stroke.len()).map(|i| way * (0.35 * made.force_n + 0.2 * (0.01 * i as f64).sin())).collect();
-        let found = fit(&[stroke.clone()], Some(&drag), &options()).unwrap();
+        let found = fit(std::slice::from_ref(&stroke), Some(&drag), &options()).unwrap();
         assert!((found.friction.unwrap() / 0.35 - 1.0).abs() < 0.1, "{:?}", found.friction);
     }
 }

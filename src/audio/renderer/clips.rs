@@ -40,7 +40,7 @@ impl Clips {
     pub(super) fn mix(&mut self, index: usize, position: u64, n: usize, channel: &mut HapticChannel) {
         let end = position + n as u64;
         let of_channel =
-            |clip: &&Box<PlayingClip>| clip.channel == index && clip.starts < end && clip.ends() > position;
+            |clip: &PlayingClip| clip.channel == index && clip.starts < end && clip.ends() > position;
         let ducked = &mut self.ducked[index];
         if self.playing.is_empty() && ducked.settled_at(1.0) {
             return;
@@ -51,11 +51,11 @@ impl Clips {
             let over = self
                 .playing
                 .iter()
-                .filter(of_channel)
+                .filter(|clip| of_channel(clip))
                 .filter(|clip| (clip.starts..clip.ends()).contains(&at));
             *x *= ducked.tick(over.fold(1.0, |least, clip| clip.ducking.min(least)));
         }
-        for clip in self.playing.iter().filter(of_channel) {
+        for clip in self.playing.iter().filter(|clip| of_channel(clip)) {
             let from = clip.starts.max(position);
             let values = &clip.samples[(from - clip.starts) as usize..];
             sum[(from - position) as usize..].iter_mut().zip(values).for_each(|(x, clip)| *x += clip);
