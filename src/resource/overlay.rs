@@ -10,7 +10,7 @@
 //! ```text
 //! n(x) = n_below(x) + c (n_all(x) − n_below(x))      c: 1 where the source has no relief, 0 from 2 rms on
 //! ```
-//! Where a map has relief but no long waves, n_below holds [those](super::long_waves) as well.
+//! n_below holds [long waves](super::long_waves) too, under a map of relief without any.
 //!
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning,
 //! at constant power: sine and cosine, because the two are unrelated.

@@ -16,7 +16,7 @@ struct Made {
     rate_hz: f64,
     seconds: f64,
     is_linear: bool,
-    /// Of the largest acceleration.
+    /// Noise over the largest acceleration.
     noise: f64,
     clip: Option<f64>,
     noise_before_clip: bool,

@@ -11,7 +11,7 @@ use glam::Vec3;
 /// Lengths of the faces, m: what is shorter than the first touches with a tip, what is longer than
 /// one counts as that. **Chosen**: a book or a drawer's runner, and a crate.
 pub const FACES_M: [f64; 2] = [0.05, 0.25];
-/// Steps after which another face is believed: points of contact come and go.
+/// Steps after which another face counts: points of contact come and go.
 const STEADY_STEPS: u32 = 6;
 /// Points of contact that count.
 const MOST_POINTS: usize = 16;
