@@ -33,6 +33,18 @@ fn mass_kg(contact_s: f64) -> f64 {
 
 /// The sound of an impact at `at` samples, on the scale of its own impulse.
 fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Integrator) -> Vec<f32> {
+    parted(modes, contact_s, at, rate_hz, integrator, 1.0)
+}
+
+/// The same, of a bead that parts so fast.
+fn parted(
+    modes: &[Mode],
+    contact_s: f64,
+    at: f64,
+    rate_hz: f64,
+    integrator: Integrator,
+    restitution: f64,
+) -> Vec<f32> {
     let config = Config { sample_rate_hz: rate_hz, integrator, culling: None, ..Config::default() };
     let asperity::Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     // Full scale is an impact like this one: what is 160 dB below it is put to rest.
@@ -45,7 +57,7 @@ fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Int
         mass_kg: mass_kg(contact_s),
         radius_m: RADIUS_M,
         striker: material(contact_s),
-        restitution: 1.0,
+        restitution,
         position: 0,
         ..Impact::on(body)
     };
@@ -127,6 +139,35 @@ fn every_strike_is_its_modes_from_the_first_sample_on() {
         }
         println!("{rate_hz} Hz: {:.3} % of the event's rms, at {:.0e} s", 100.0 * worst.0, worst.1);
         assert!(worst.0 < 0.01, "{rate_hz} Hz: {:.3} % at {:.0e} s", 100.0 * worst.0, worst.1);
+    }
+}
+
+#[test]
+fn a_blow_that_loses_energy_is_brighter_as_its_law_says() {
+    // Contact time, third octaves in units of it, and levels over the loss-free blow's there, dB,
+    // each of one impulse: `dsp/tests/independent/hertz_restitution.py`'s integration.
+    let contact_s = 1e-3;
+    for (restitution, gains_db) in [(0.5, [0.1, 0.5, 3.6, 15.4]), (0.2, [0.8, 2.4, 8.0, 22.9])] {
+        for (band, gain_db) in [0.5, 0.794, 1.26, 2.0].into_iter().zip(gains_db) {
+            let mode = |i: i32| Mode {
+                frequency_hz: band / contact_s * 2f64.powf(f64::from(i) / 24.0),
+                decay_per_s: 60.0,
+                amplitude: 1.0,
+                phase_rad: 0.0,
+            };
+            let level = |restitution: f64| -> f64 {
+                let alone = |i: i32| -> f64 {
+                    let integrator = Integrator::default();
+                    let audio = parted(&[mode(i)], contact_s, 100.0, 44_100.0, integrator, restitution);
+                    audio[300..].iter().map(|y| f64::from(*y).powi(2)).sum()
+                };
+                10.0 * (-3..=3).map(alone).sum::<f64>().log10()
+            };
+            let impulse_db = 20.0 * f64::log10(0.5 * (1.0 + restitution));
+            let apart_db = level(restitution) - level(1.0) - impulse_db - gain_db;
+            println!("e {restitution} at {band} / τ: {apart_db:+.2} dB beside {gain_db}");
+            assert!(apart_db.abs() < 1.8, "e {restitution} at {band} / τ: {apart_db} dB beside {gain_db}");
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 23] = [
+const READ: [&str; 24] = [
     "strokes",
     "ring",
     "colour",
@@ -36,6 +36,7 @@ const READ: [&str; 23] = [
     "what",
     "study",
     "answers",
+    "bake",
 ];
 
 /// Arguments that are pictures or folders of pictures to read.

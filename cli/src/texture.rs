@@ -3,6 +3,7 @@
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
 pub mod analyze;
+pub mod bake;
 pub mod brownian;
 pub mod compare;
 pub mod from_normals;
@@ -106,6 +107,8 @@ pub struct Preview {
     pub relief_m: f64,
     /// Rms height about the mean.
     pub rms_m: f64,
+    /// Remarks on what it was made from.
+    pub warnings: Vec<String>,
     /// The file written.
     pub files: Vec<std::path::PathBuf>,
 }
@@ -128,6 +131,7 @@ fn write_heights(path: &Path, heights_m: &Raster, metres_per_px: f64) -> Result<
         metres_per_grey: relief_m / 65_535.0,
         relief_m,
         rms_m,
+        warnings: Vec::new(),
         files: outputs.commit()?,
     })
 }
@@ -148,5 +152,6 @@ fn say_preview(preview: &Preview, json: bool, width_m: f64) -> Result<(), CliErr
         width_m,
         preview.relief_m,
     ));
+    preview.warnings.iter().for_each(|warning| crate::output::say(&format!("warning: {warning}")));
     Ok(())
 }

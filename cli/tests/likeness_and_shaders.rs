@@ -5,8 +5,10 @@ use crate::support;
 use crate::surfaces;
 
 use asperity_surface::raster::Raster;
+use asperity_surface::solid_materials::SolidMaterial;
+use asperity_surface::solid_noise::SolidNoise;
 use maps::with_maps;
-use serde_json::Value;
+use serde_json::{Value, json};
 use support::{Scene, asperity, assert_refused, told};
 use surfaces::{fractal, ground, ridges};
 
@@ -190,4 +192,79 @@ fn a_table_of_the_sources_is_computed_again_and_put_beside_what_is_printed() {
         &asperity(scene.folder.path(), &["evidence", "001-fig-5", "-o", "out"]),
         &["001-fig-5", "001-fig-4"],
     );
+}
+
+/// A square of 20 mm as glTF, which its node doubles and lifts by 5 mm; texture coordinates times `repeats`.
+fn square(repeats: f32, with_coordinates: bool) -> (Value, Vec<u8>) {
+    let points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.02, 0.0], [0.0, 0.02, 0.0_f32]];
+    let uv = [[0.0, 0.0], [repeats, 0.0], [repeats, repeats], [0.0, repeats]];
+    let bytes: Vec<u8> =
+        points.as_flattened().iter().chain(uv.as_flattened()).flat_map(|x| x.to_le_bytes()).collect();
+    let corners: Vec<u8> = [0_u16, 1, 2, 0, 2, 3].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let mut attributes = json!({"POSITION": 0});
+    if with_coordinates {
+        attributes["TEXCOORD_0"] = json!(1);
+    }
+    let document = json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "scale": [2, 2, 2], "translation": [0, 0, 0.005]}],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": 2}]}],
+        "buffers": [{"uri": "square.bin", "byteLength": 92}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 48},
+            {"buffer": 0, "byteOffset": 48, "byteLength": 32},
+            {"buffer": 0, "byteOffset": 80, "byteLength": 12},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4},
+            {"bufferView": 1, "componentType": 5126, "type": "VEC2", "count": 4},
+            {"bufferView": 2, "componentType": 5123, "type": "SCALAR", "count": 6},
+        ],
+    });
+    (document, [bytes, corners].concat())
+}
+
+#[test]
+fn a_solid_is_baked_over_a_mesh_where_its_texels_lie() {
+    let scene = Scene::new();
+    let folder = scene.folder.path();
+    let put = |name: &str, repeats: f32, with_coordinates: bool| {
+        let (document, bytes) = square(repeats, with_coordinates);
+        std::fs::write(folder.join(name), document.to_string()).unwrap();
+        std::fs::write(folder.join("square.bin"), bytes).unwrap();
+    };
+    // Three quarters of the map, so that a border and a rest are left.
+    put("square.gltf", 0.75, true);
+    let arguments = ["solid", "granite", "--bake", "square.gltf", "--size", "128", "-o", "granite.png"];
+    let told = report(&scene, &arguments);
+    assert_eq!(told["warnings"], json!([]), "{told}");
+    let texel_m = 0.04 / (0.75 * 128.0);
+    let told_m = told["metres_per_px"].as_f64().unwrap();
+    assert!((told_m / texel_m - 1.0).abs() < 1e-6, "{told_m} m a texel");
+    let grey_m = told["metres_per_grey"].as_f64().unwrap();
+    let map = image::open(folder.join("granite.png")).unwrap().into_luma16();
+    let parameters = SolidMaterial::Granite.parameters();
+    let noise = SolidNoise::new(parameters.clone(), 1).unwrap();
+    let height_m = |x: u32, y: u32| {
+        let [x, y] = [x, y].map(|texel| (f64::from(texel) + 0.5) * texel_m);
+        parameters.amplitude_m * noise.definition(&parameters, [x, y, 0.005])
+    };
+    let first_m = height_m(0, 0) - f64::from(map.get_pixel(0, 0).0[0]) * grey_m;
+    // And four texels beyond its rim.
+    for (x, y) in (0..100).flat_map(|x| (0..100).map(move |y| (x, y))).filter(|(x, y)| x.max(y) < &99) {
+        let grey = f64::from(map.get_pixel(x, y).0[0]);
+        let exact = (height_m(x, y) - first_m) / grey_m;
+        assert!((grey - exact).abs() < 1.1, "texel {x}, {y}: {grey} for {exact}");
+    }
+    for (name, repeats, with_coordinates, words) in [
+        ("tiled.gltf", 3.0, true, &["tiled.gltf", "run to 3", "must be 0 to 1"][..]),
+        ("bare.gltf", 1.0, false, &["bare.gltf", "no texture coordinates", "--unwrap energy"]),
+    ] {
+        put(name, repeats, with_coordinates);
+        let told = asperity(folder, &["texture", "solid", "granite", "--bake", name, "-o", "a.png"]);
+        assert_refused(&told, words);
+    }
+    let told = asperity(folder, &["texture", "solid", "grating", "--bake", "square.gltf", "-o", "a.png"]);
+    assert_refused(&told, &["--bake", "takes no grating"]);
+    assert!(!folder.join("a.png").exists());
 }

@@ -14,7 +14,7 @@ fn hertz(c: &mut Criterion) {
             b.iter(|| {
                 at += 7;
                 let offset = (at % 16) as f64 / 16.0;
-                let pulse = HertzPulse { impulse_n_s: 1e-6, contact_time_s: black_box(samples / 44_100.0) };
+                let pulse = HertzPulse::elastic(1e-6, black_box(samples / 44_100.0));
                 pulse.deposit(&mut ring, at, offset, 44_100.0);
             });
         });

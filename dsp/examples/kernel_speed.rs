@@ -93,7 +93,7 @@ fn impacts() {
         show(&format!("{samples} samples long"), 200, || {
             for _ in 0..200 {
                 at += 7;
-                let pulse = HertzPulse { impulse_n_s: 1e-6, contact_time_s: black_box(samples / RATE_HZ) };
+                let pulse = HertzPulse::elastic(1e-6, black_box(samples / RATE_HZ));
                 pulse.deposit(&mut ring, at, (at % 16) as f64 / 16.0, RATE_HZ);
             }
         });

@@ -132,7 +132,7 @@ fn a_force_that_lasts_is_the_convolution_with_the_modes() {
 fn a_collision_of_25_samples_is_the_convolution_with_the_modes() {
     let modes = modes();
     let (onset, samples) = (20.6_f64, 25.0_f64);
-    let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: samples / RATE_HZ };
+    let pulse = HertzPulse::elastic(1.0, samples / RATE_HZ);
     let mut spread = vec![0.0; 4096];
     pulse.deposit(&mut spread, onset as u64, onset.fract(), RATE_HZ);
     let wanted = convolved(&modes, |t| asperity_dsp::hertz::pulse_shape((t - onset) / samples) / samples);

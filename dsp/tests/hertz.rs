@@ -152,7 +152,7 @@ fn the_ring_receives_the_pulse_under_the_cubic_kernel() {
     for length in [0.01, 0.3, 1.0, 2.7, 3.999, 4.0, 4.001, 5.5, 9.0, 40.0, 200.0] {
         for offset in [0.0, 0.123, 0.5, 0.999, 1.0] {
             let mut ring = vec![0.0; 512];
-            HertzPulse { impulse_n_s: 3.0, contact_time_s: length }.deposit(&mut ring, 1_000, offset, 1.0);
+            HertzPulse::elastic(3.0, length).deposit(&mut ring, 1_000, offset, 1.0);
             for k in 0..length as usize + 8 {
                 // Brute force: the middle of 4000 pieces of the pulse.
                 let n = 4_000;
@@ -178,8 +178,7 @@ fn impulse_onset_and_length_are_exact_to_rounding() {
         let length = 1e-3 * 1e6_f64.powf(rng.uniform());
         let offset = rng.uniform();
         let mut ring = vec![0.0; 2048];
-        HertzPulse { impulse_n_s: 1.0, contact_time_s: length / 44_100.0 }
-            .deposit(&mut ring, 0, offset, 44_100.0);
+        HertzPulse::elastic(1.0, length / 44_100.0).deposit(&mut ring, 0, offset, 44_100.0);
         let moment = |power: i32| -> f64 {
             let centre = KERNEL_LATENCY as f64 + offset + 0.5 * length;
             ring.iter().enumerate().map(|(k, x)| x * (k as f64 - centre).powi(power)).sum()
@@ -211,7 +210,7 @@ fn worst_error(rate: f64, contact_time_s: f64, force: &[f64], rng: &mut Rng) -> 
             let design = ReferenceMode::new(&mode, rate, &GroupOptions::IMPULSE_RING).unwrap();
             let (mut state, mut ring) = (ReferenceState::default(), vec![0.0; 1024]);
             let offset = rng.uniform();
-            HertzPulse { impulse_n_s: 1.0, contact_time_s }.deposit(&mut ring, 20, offset, rate);
+            HertzPulse::elastic(1.0, contact_time_s).deposit(&mut ring, 20, offset, rate);
             let omega = 2.0 * PI * frequency_hz;
             let (re, im) = transform(force, contact_time_s, decay_per_s, omega);
             let (level, angle) = ((re * re + im * im).sqrt(), im.atan2(re));
@@ -256,7 +255,7 @@ fn an_impact_is_equally_loud_at_every_rate() {
             let modes = [mode(400.0), mode(2_500.0), mode(6_300.0), mode(9_900.0)];
             let group = design_group(&modes, rate, &GroupOptions::IMPULSE_RING).unwrap();
             let mut ring = vec![0.0; 1 << 16];
-            HertzPulse { impulse_n_s: 1e-3, contact_time_s }.deposit(&mut ring, 10, 0.3, rate);
+            HertzPulse::elastic(1e-3, contact_time_s).deposit(&mut ring, 10, 0.3, rate);
             let samples = (0.25 * rate) as usize;
             let (mut impulses, mut out) = (vec![0.0; samples], vec![0.0; samples]);
             take(&mut ring, 0, &mut impulses);
@@ -314,7 +313,7 @@ fn sampled_force_and_pulses_reach_a_mode_at_the_same_time_and_level() {
 #[test]
 fn the_ring_wraps_clamps_and_ignores_what_is_no_pulse() {
     let mut ring = vec![0.0; 64];
-    HertzPulse { impulse_n_s: 1.0, contact_time_s: 1.0 }.deposit(&mut ring, u64::MAX - 3, 0.5, 44_100.0);
+    HertzPulse::elastic(1.0, 1.0).deposit(&mut ring, u64::MAX - 3, 0.5, 44_100.0);
     let sum: f64 = ring.iter().sum();
     assert!(
         (sum - 1.0).abs() < 1e-9 && ring.iter().all(|x| *x >= 0.0),
@@ -326,10 +325,10 @@ fn the_ring_wraps_clamps_and_ignores_what_is_no_pulse() {
     for (j, t, o) in
         [(f64::NAN, 1e-4, 0.0), (1.0, f64::NAN, 0.0), (1.0, 1e-4, f64::NAN), (f64::INFINITY, 1e-4, 0.0)]
     {
-        HertzPulse { impulse_n_s: j, contact_time_s: t }.deposit(&mut ring, 0, o, 44_100.0);
+        HertzPulse::elastic(j, t).deposit(&mut ring, 0, o, 44_100.0);
     }
     assert!(ring.iter().all(|x| *x == 0.0));
-    HertzPulse { impulse_n_s: 1.0, contact_time_s: -1.0 }.deposit(&mut ring, 0, 7.0, 44_100.0);
+    HertzPulse::elastic(1.0, -1.0).deposit(&mut ring, 0, 7.0, 44_100.0);
     assert!((ring.iter().sum::<f64>() - 1.0).abs() < 1e-9);
 }
 
@@ -349,7 +348,7 @@ fn reading_clears_the_ring_and_lets_no_denormal_through() {
 #[test]
 fn onsets_within_a_contact_add_only_what_is_harder() {
     let (mut merge, rate) = (OnsetMerge::default(), 44_100.0);
-    let hit = |j| HertzPulse { impulse_n_s: j, contact_time_s: 4.0 / rate };
+    let hit = |j| HertzPulse::elastic(j, 4.0 / rate);
     assert_eq!(merge.merge_onset(hit(1.0), 100, 0.5, rate), Some(hit(1.0)));
     assert_eq!(merge.merge_onset(hit(0.7), 102, 0.0, rate), None);
     let more = merge.merge_onset(hit(1.5), 103, 0.0, rate).unwrap();
@@ -375,4 +374,82 @@ fn a_force_spread_sample_by_sample_is_what_the_ring_would_have_given() {
     for (n, (a, b)) in spread.iter().zip(&ring).enumerate() {
         assert!((a - b).abs() < 1e-15, "sample {n}: {a} against {b}");
     }
+}
+
+/// Force of m x'' = −x^1.5 (1 + a x') from x' = 1, its step, and the speed at which the bodies part.
+fn damped(restitution: f64) -> (Vec<f64>, f64, f64) {
+    // a (1 + e) = ln((1 + a) / (1 − a e)), by halving.
+    let (mut low, mut high) = (1e-9, (1.0 - 1e-12) / restitution);
+    for _ in 0..200 {
+        let a = 0.5 * (low + high);
+        let over = a * (1.0 + restitution) - ((1.0 + a) / (1.0 - a * restitution)).ln();
+        if over > 0.0 { low = a } else { high = a }
+    }
+    let pull = |x: f64, v: f64| -> f64 { -x.max(0.0).powf(1.5) * (1.0 + low * v) };
+    let (mut x, mut v, mut force, h) = (0.0, 1.0, vec![0.0], 1e-3);
+    while x >= 0.0 {
+        let (k1, l1) = (v, pull(x, v));
+        let (k2, l2) = (v + 0.5 * h * l1, pull(x + 0.5 * h * k1, v + 0.5 * h * l1));
+        let (k3, l3) = (v + 0.5 * h * l2, pull(x + 0.5 * h * k2, v + 0.5 * h * l2));
+        let (k4, l4) = (v + h * l3, pull(x + h * k3, v + h * l3));
+        x += h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+        v += h / 6.0 * (l1 + 2.0 * (l2 + l3) + l4);
+        force.push(-pull(x, v));
+    }
+    (force, h, -v)
+}
+
+/// |∫ F e^(−iωt) dt|² of a force that is sampled this finely.
+fn power_at(force: &[f64], step_s: f64, hz: f64) -> f64 {
+    let at = |(i, f): (usize, &f64)| {
+        let angle = 2.0 * PI * hz * i as f64 * step_s;
+        [f * angle.cos(), f * angle.sin()]
+    };
+    let [re, im] = force.iter().enumerate().map(at).fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    (re * re + im * im) * step_s * step_s
+}
+
+#[test]
+fn a_lossy_blow_is_as_bright_as_its_law_makes_it() {
+    let (elastic, step_s, _) = damped(0.999_999);
+    let time_s = (elastic.len() - 1) as f64 * step_s;
+    for restitution in [0.95, 0.85, 0.7, 0.55, 0.5, 0.4, 0.25, 0.12] {
+        let (force, step_s, parted) = damped(restitution);
+        assert!((parted - restitution).abs() < 2e-3, "{restitution}: the law parts with {parted}");
+        let pulse = HertzPulse { restitution, ..HertzPulse::elastic(1.0 + restitution, time_s) };
+        let ours: Vec<f64> = (0..4_000).map(|i| pulse.force_n(f64::from(i) * 1e-3)).collect();
+        let mut band_hz = 0.25 / time_s;
+        while band_hz < 5.0 / time_s {
+            let power = |force: &[f64], step_s: f64| -> f64 {
+                (0..8).map(|i| power_at(force, step_s, band_hz * 2f64.powf(f64::from(i) / 24.0))).sum()
+            };
+            let apart_db = 10.0 * (power(&ours, 1e-3) / power(&force, step_s)).log10();
+            let bound_db = if band_hz < 3.0 / time_s { 1.6 } else { 3.0 };
+            assert!(apart_db.abs() < bound_db, "e {restitution}, {:.2} / τ: {apart_db} dB", band_hz * time_s);
+            band_hz *= 2f64.powf(1.0 / 3.0);
+        }
+        let peak = |force: &[f64]| force.iter().copied().fold(0.0, f64::max);
+        assert!(
+            (peak(&ours) / peak(&force) - 1.0).abs() < 0.1,
+            "e {restitution}: {}",
+            peak(&ours) / peak(&force)
+        );
+    }
+}
+
+#[test]
+fn a_lossy_pulse_keeps_its_impulse_and_an_elastic_one_its_bits() {
+    let mut rng = Rng::new(7);
+    for _ in 0..500 {
+        let restitution = rng.uniform();
+        let (impulse_n_s, contact_time_s) = (1.0 + rng.uniform(), 1e-6 * 1e4f64.powf(rng.uniform()));
+        let pulse = HertzPulse { restitution, ..HertzPulse::elastic(impulse_n_s, contact_time_s) };
+        let (mut ring, offset) = (vec![0.0; 1024], rng.uniform());
+        pulse.deposit(&mut ring, 30, offset, 44_100.0);
+        assert!((ring.iter().sum::<f64>() / impulse_n_s - 1.0).abs() < 1e-9, "e {restitution}");
+        let end = pulse.end_sample(30, 44_100.0) as usize;
+        assert!(ring[end..].iter().chain(&ring[..30]).all(|x| *x == 0.0), "e {restitution}: past its end");
+    }
+    let whole = HertzPulse::elastic(0.3, 2e-4);
+    assert_eq!(whole.elastic_parts().collect::<Vec<_>>(), [whole]);
 }

@@ -82,7 +82,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     let states = vec![GroupState::REST; groups.len()];
     let mut bank = ModalBank::new(Level::detect(), groups, states);
     let first = OnsetCorrection::new(modes.iter().copied(), rate_hz).unwrap();
-    let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: contact_s };
+    let pulse = HertzPulse::elastic(1.0, contact_s);
     let ring = (count + 512).next_power_of_two();
     let (mut impulses, mut early) = (vec![0.0; ring], vec![0.0; ring]);
     pulse.deposit(&mut impulses, onset as u64, onset.fract(), rate_hz);

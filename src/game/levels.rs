@@ -129,6 +129,10 @@ impl BlowPeaks {
 
     /// Peak of a pulse.
     fn at(&self, pulse: HertzPulse) -> f64 {
+        pulse.elastic_parts().map(|part| self.at_elastic(part)).sum()
+    }
+
+    fn at_elastic(&self, pulse: HertzPulse) -> f64 {
         let steps = libm::log2(pulse.contact_time_s / SHORTEST_S) / libm::log2(TIME_RATIO);
         let steps = steps.clamp(0.0, (TIMES - 1) as f64);
         let below = (steps as usize).min(TIMES - 2);

@@ -49,6 +49,19 @@ impl Click {
         offset: f64,
         sample_rate_hz: f64,
     ) {
+        for part in pulse.elastic_parts() {
+            self.deposit_elastic(&part, ring, sample, offset, sample_rate_hz);
+        }
+    }
+
+    fn deposit_elastic(
+        &self,
+        pulse: &HertzPulse,
+        ring: &mut [f32],
+        sample: u64,
+        offset: f64,
+        sample_rate_hz: f64,
+    ) {
         let peak = self.peak(pulse);
         let (mask, length) = (ring.len() - 1, pulse.contact_time_s * sample_rate_hz);
         // The mean over a sample, so that nothing is left when it is over, however short it is.
@@ -65,7 +78,7 @@ impl Click {
     }
 
     fn samples(pulse: &HertzPulse, sample_rate_hz: f64) -> u64 {
-        (pulse.contact_time_s * sample_rate_hz).ceil() as u64 + 2
+        (pulse.length_s() * sample_rate_hz).ceil() as u64 + 2
     }
 
     fn peak(&self, pulse: &HertzPulse) -> f64 {
@@ -83,7 +96,7 @@ mod tests {
     fn a_die_clicks_as_loud_as_its_closed_form_at_every_rate_and_leaves_nothing() {
         for rate_hz in [44_100.0, 96_000.0, 192_000.0] {
             for offset in [0.0, 0.3, 0.9] {
-                let pulse = HertzPulse { impulse_n_s: 0.004, contact_time_s: 400e-6 };
+                let pulse = HertzPulse::elastic(0.004, 400e-6);
                 let mut ring = [0.0_f32; 256];
                 DIE.deposit(&pulse, &mut ring, 250, offset, rate_hz);
                 let sum: f64 = ring.iter().map(|y| f64::from(*y)).sum();
@@ -97,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_soft_blow_is_left_out_and_impossible_bodies_are_refused() {
-        let soft = HertzPulse { impulse_n_s: 1e-9, contact_time_s: 0.1 };
+        let soft = HertzPulse::elastic(1e-9, 0.1);
         assert_eq!(DIE.samples_of(&soft, 44_100.0), 0);
         assert!(DIE.check().is_ok());
         assert_eq!(Click { mass_kg: f64::NAN, ..DIE }.check().unwrap_err().0, "click.mass_kg");

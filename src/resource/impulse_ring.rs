@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn what_is_deposited_comes_out_once_and_whole_wherever_it_is_cut() {
-        let pulse = HertzPulse { impulse_n_s: 2e-3, contact_time_s: 1e-3 };
+        let pulse = HertzPulse::elastic(2e-3, 1e-3);
         let take = |cuts: &[usize]| {
             let mut ring = ImpulseRing::new(0.01, 44_100.0);
             ring.deposit(&pulse, 1_000_000, 0.3, 44_100.0);

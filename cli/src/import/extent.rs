@@ -63,7 +63,10 @@ pub fn extent_m(
 }
 
 /// Texture coordinates of a primitive as a texture reads them.
-fn coordinates(
+///
+/// # Errors
+/// When the accessor does not hold what it should.
+pub fn coordinates(
     document: &Document,
     primitive: &Value,
     texture: &Value,

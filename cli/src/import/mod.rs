@@ -2,7 +2,7 @@
 //! `KHR_audio_rigid_bodies` or, without it, by its meshes and normal textures.
 
 mod bodies;
-mod extent;
+pub mod extent;
 mod finish;
 mod plain;
 

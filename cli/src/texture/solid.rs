@@ -1,6 +1,7 @@
 //! `asperity texture solid PRESET --size N -o OUT.png`: a solid-noise material or a grating as a
-//! picture, or as functions of a shader.
+//! picture, as functions of a shader, or as a map over a mesh.
 
+use super::bake::bake;
 use super::shader::{Language, of_grating, of_solid};
 use super::{positive, say_preview, write_heights};
 use crate::error::CliError;
@@ -12,7 +13,7 @@ use asperity_surface::solid_materials::SolidMaterial;
 use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Make a 16-bit picture, or a shader's functions, of a solid-noise material (sandpaper, granite,
 /// rough glass, wood, sand, gravel, pebbles, ridged, billow, turbulence, voronoi) or of a grating
@@ -46,6 +47,10 @@ pub struct Options {
     /// and NAME_picture of a place in the picture, both metres
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub shader: Option<Language>,
+    /// Sample it over the surface of a glTF mesh instead, into the mesh's texture coordinates: for
+    /// engines without shaders
+    #[arg(long, value_name = "MESH.glb", conflicts_with_all = ["shader", "width_m"])]
+    pub bake: Option<PathBuf>,
     /// File to write: 16-bit PNG, or the shader's text, which goes to stdout unless given
     #[arg(short, long = "output", value_name = "OUT.png", required_unless_present = "shader")]
     pub output: Option<PathBuf>,
@@ -91,6 +96,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     ends_in(path, "png")?;
     check_destination(path)?;
     let size = options.size as usize;
+    if let Some(mesh) = &options.bake {
+        return write_baked(options, &heights, mesh, path);
+    }
     let metres_per_px = options.width_m / size as f64;
     let heights_m = Raster::from_fn(size, size, |x, y| {
         let place = [(x as f64 + 0.5) * metres_per_px, (y as f64 + 0.5) * metres_per_px];
@@ -104,6 +112,19 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     });
     let preview = write_heights(path, &heights_m, metres_per_px)?;
     say_preview(&preview, options.json, options.width_m)
+}
+
+fn write_baked(options: &Options, heights: &Heights, mesh: &Path, path: &Path) -> Result<(), CliError> {
+    let Heights::Solid(noise) = heights else {
+        let right = "bake a solid: a grating lies in one plane";
+        return Err(CliError::new("--bake", "takes no grating", right));
+    };
+    let parameters = noise.parameters();
+    let height = |at_m| parameters.amplitude_m * noise.definition(&parameters, at_m);
+    let baked = bake(mesh, options.size as usize, height)?;
+    let mut preview = write_heights(path, &baked.heights_m, baked.metres_per_px)?;
+    preview.warnings = baked.warnings;
+    say_preview(&preview, options.json, baked.metres_per_px * f64::from(options.size))
 }
 
 fn heights(options: &Options) -> Result<Heights, CliError> {

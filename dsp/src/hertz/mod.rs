@@ -24,10 +24,11 @@
 //! back below 10 kHz stays under 1 % of the impulse for any contact time. The kernel's own response
 //! and its [`KERNEL_LATENCY`] are undone mode by mode when the bank is designed
 //! ([`crate::modal_bank::GroupOptions::impulse_kernel_compensation`]), so that a mode sounds in the
-//! very sample of the contact. A restitution e below 1 scales the impulse and leaves the shape
-//! elastic.
+//! very sample of the contact. A restitution e below 1 scales the impulse and makes the pulse
+//! rise faster and fall slower (`restitution`).
 
 mod merge;
+mod restitution;
 mod ring;
 mod shape;
 
@@ -140,7 +141,7 @@ impl HertzContact {
         self.mass_kg
     }
 
-    /// τ at a closing speed, s; it falls with the fifth root of the speed.
+    /// τ at a closing speed, s, of the elastic impact; it falls with the fifth root of the speed.
     #[inline]
     #[must_use]
     pub fn contact_time_s(&self, speed_m_s: f64) -> f64 {
@@ -157,7 +158,12 @@ impl HertzContact {
     /// Largest force of the pulse, N.
     #[must_use]
     pub fn peak_force_n(&self, speed_m_s: f64) -> f64 {
-        shape::PEAK * self.impulse_n_s(speed_m_s) / self.contact_time_s(speed_m_s)
+        let pulse = self.pulse(speed_m_s);
+        if self.restitution == 1.0 {
+            return shape::PEAK * pulse.impulse_n_s / pulse.contact_time_s;
+        }
+        let force_n = |i: u32| pulse.force_n(f64::from(i) / 256.0 * pulse.contact_time_s);
+        (0..256).map(force_n).fold(0.0, f64::max)
     }
 
     /// The pulse of an impact at `speed_m_s`; a speed that is not above 0 and finite gives no
@@ -166,7 +172,8 @@ impl HertzContact {
     #[must_use]
     pub fn pulse(&self, speed_m_s: f64) -> HertzPulse {
         let speed = if speed_m_s > 0.0 && speed_m_s.is_finite() { speed_m_s } else { 0.0 };
-        HertzPulse { impulse_n_s: self.impulse_n_s(speed), contact_time_s: self.contact_time_s(speed) }
+        let elastic = HertzPulse::elastic(self.impulse_n_s(speed), self.contact_time_s(speed));
+        HertzPulse { restitution: self.restitution, ..elastic }
     }
 }
 
@@ -175,8 +182,10 @@ impl HertzContact {
 pub struct HertzPulse {
     /// Area under the force, N·s.
     pub impulse_n_s: f64,
-    /// Contact time of the bodies, s.
+    /// Contact time of the bodies if they lost nothing, s.
     pub contact_time_s: f64,
+    /// Rebound over approach speed, 0–1; shapes the pulse, whose area is the impulse.
+    pub restitution: f64,
 }
 
 /// v^(−1/5) to 1e-8 for speeds from [`SLOWEST_M_S`] on, in a third of the time of `pow`: a first

@@ -19,10 +19,16 @@ impl HertzPulse {
     /// (0–1) of a step after the absolute sample `onset_sample`; sample k > `onset_sample` receives
     /// `J · (p ∗ β³)(k − 2 − onset)`, exact in area whatever the contact time.
     ///
-    /// The last sample written is the contact time + 5 after the onset. A contact longer than the
+    /// The last sample written is the pulse's length + 5 after the onset. A contact longer than the
     /// ring's length − 6 samples is shortened to it (the impulse is kept). A pulse that holds no
     /// finite number is ignored.
     pub fn deposit(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
+        for part in self.elastic_parts() {
+            part.deposit_elastic(ring, onset_sample, onset_offset, sample_rate_hz);
+        }
+    }
+
+    fn deposit_elastic(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
         let Some(length) = self.samples_in(ring.len(), sample_rate_hz).filter(|_| onset_offset.is_finite())
         else {
             return;
@@ -46,7 +52,7 @@ impl HertzPulse {
     #[must_use]
     pub fn end_sample(&self, onset_sample: u64, sample_rate_hz: f64) -> u64 {
         // A saturating cast: an endless pulse is cut to the ring by the deposit itself.
-        onset_sample + (self.contact_time_s * sample_rate_hz) as u64 + KERNEL_SAMPLES as u64 + 2
+        onset_sample + (self.length_s() * sample_rate_hz) as u64 + KERNEL_SAMPLES as u64 + 2
     }
 
     /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no

@@ -158,6 +158,19 @@ impl OnsetCorrection {
         onset_offset: f64,
         sample_rate_hz: f64,
     ) {
+        for part in pulse.elastic_parts() {
+            self.deposit_elastic(&part, ring, onset_sample, onset_offset, sample_rate_hz);
+        }
+    }
+
+    fn deposit_elastic(
+        &self,
+        pulse: &HertzPulse,
+        ring: &mut [f32],
+        onset_sample: u64,
+        onset_offset: f64,
+        sample_rate_hz: f64,
+    ) {
         let Some(length) = pulse.samples_in(ring.len(), sample_rate_hz) else { return };
         let peak = pulse.impulse_n_s / length;
         let mask = ring.len() - 1;

@@ -139,10 +139,8 @@ impl Exciters {
         let (sample, offset) = if half < 1.0 { (row.saturating_sub(1), half) } else { (row, half - 1.0) };
         let own_s = by.slot.stroking.hertz.contact_time_s(onset.closing_m_s);
         let contact_time_s = by.probe.contact_time_ratio * own_s;
-        let pulse = HertzPulse {
-            impulse_n_s: by.probe.collision_mass_kg * onset.closing_m_s,
-            contact_time_s: contact_time_s.min(LONGEST_COLLISION_S),
-        };
+        let impulse_n_s = by.probe.collision_mass_kg * onset.closing_m_s;
+        let pulse = HertzPulse::elastic(impulse_n_s, contact_time_s.min(LONGEST_COLLISION_S));
         if let Some(pulse) = self.merge.merge_onset(pulse, sample, offset, by.sample_rate_hz) {
             self.pulses.deposit(&pulse, sample, offset, by.sample_rate_hz);
         }
@@ -156,10 +154,8 @@ impl Exciters {
         if draw < expected {
             // The part of the draw below `expected` is uniform too: it says when within the sample.
             let own_s = by.slot.stroking.hertz.contact_time_s(GRAIN_M_S);
-            let pulse = HertzPulse {
-                impulse_n_s: by.reaction.grain_impulse_n_s * (0.5 + draw / expected),
-                contact_time_s: own_s.min(LONGEST_COLLISION_S),
-            };
+            let impulse_n_s = by.reaction.grain_impulse_n_s * (0.5 + draw / expected);
+            let pulse = HertzPulse::elastic(impulse_n_s, own_s.min(LONGEST_COLLISION_S));
             self.pulses.deposit(&pulse, sample, draw / expected, by.sample_rate_hz);
         }
     }

@@ -302,7 +302,8 @@ impl Scene {
             impact.mass_kg,
         );
         let contact_time_s = contact.ok()?.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S);
-        Some(HertzPulse { impulse_n_s: impact.impulse_n_s(), contact_time_s })
+        let restitution = impact.restitution;
+        Some(HertzPulse { impulse_n_s: impact.impulse_n_s(), contact_time_s, restitution })
     }
 
     fn send_impact(&mut self, stamp: Stamp, impact: &Impact, ticket: u32) -> Result<(), Refusal> {

@@ -51,7 +51,7 @@ mod tests {
                 phase_rad,
             },
         );
-        let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: 0.0 };
+        let pulse = HertzPulse::elastic(1.0, 0.0);
         let (mut ring, mut early) = ([0.0; 64], [0.0_f32; 64]);
         pulse.deposit(&mut ring, 4, 0.0, rate);
         OnsetCorrection::new(modes, rate).unwrap().deposit(&pulse, &mut early, 4, 0.0, rate);
