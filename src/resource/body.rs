@@ -1,29 +1,29 @@
 //! A body, prepared for the audio half: its modal bank and the impulse rings that excite it.
 
+mod place;
+mod ringing;
+
 use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::resource::bank::{
-    Bank, ContactKey, LONGEST_CONTACT_S, MODE_LEVELS, SheddingLevels, first_samples,
-};
+use crate::resource::bank::{Bank, ContactKey, LONGEST_CONTACT_S, SheddingLevels, first_samples};
 use crate::resource::body_field::{BodyField, FIELD_INPUTS};
 use crate::resource::body_rub::{BodyRub, FrictionInput};
 use crate::resource::bursts::Bursts;
 use crate::resource::diffuse::DiffuseSeat;
 use crate::resource::impulse_ring::ImpulseRing;
-use crate::resource::pickup::{Heard, Pickups, PlacedPickup};
+use crate::resource::pickup::{Pickups, PlacedPickup};
 use crate::resource::strike_point::StrikePoint;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY};
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
-use asperity_dsp::modal_bank::{
-    self, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank, OnsetCorrection,
-};
+use asperity_dsp::modal_bank::{self, GroupOptions, GroupState, LaneGains, ModalBank};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
 use asperity_surface::height_field::MAX_BLOCK;
+use place::Place;
 
 /// Largest number of inputs of the bank at once: the body's positions, its places, and what rubs
 /// it.
@@ -64,24 +64,6 @@ pub(crate) struct BodySlot {
     early: ImpulseRing<f32>,
 }
 
-/// One strike position: what reaches the body there.
-struct Place {
-    /// Gain of each lane; empty for the only position of a body.
-    gains: Vec<LaneGains>,
-    /// For each level of modes left out.
-    first_samples: [OnsetCorrection; MODE_LEVELS],
-    bus: ImpulseRing,
-    /// Impulses of contacts during the present stretch.
-    contacts_n_s: [f64; MAX_BLOCK],
-    touched: bool,
-    /// All of it, while the stretch is rendered.
-    input: [f32; MAX_BLOCK],
-    /// Something of it is in that stretch.
-    reached: bool,
-    /// Its strikes alone, where pickups ask for them.
-    struck: Option<Box<[f32; MAX_BLOCK]>>,
-}
-
 /// Way of rendering a stretch.
 #[derive(Clone, Copy)]
 pub(crate) struct RenderArgs {
@@ -89,48 +71,6 @@ pub(crate) struct RenderArgs {
     pub(crate) position: u64,
     /// Number of the [`MODE_LEVELS`] that are left out because blocks run late.
     pub(crate) mode_level: usize,
-}
-
-impl Place {
-    fn new(
-        gains: Vec<LaneGains>,
-        first_samples: [OnsetCorrection; MODE_LEVELS],
-        sample_rate_hz: f64,
-    ) -> Self {
-        let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        let (touched, reached, struck) = (false, false, None);
-        Self { gains, first_samples, bus, contacts_n_s, touched, input, reached, struck }
-    }
-
-    fn is_silent(&self, position: u64) -> bool {
-        !self.touched && self.bus.is_empty(position)
-    }
-
-    /// Gathers the impulses of the next `n` samples.
-    fn gather(&mut self, position: u64, n: usize) {
-        let input = &mut self.input[..n];
-        let busy = !self.bus.is_empty(position);
-        // The bus is empty beyond the last impact.
-        if busy {
-            self.bus.take(position, input);
-        }
-        if let Some(struck) = &mut self.struck {
-            struck[..n].fill(0.0);
-            if busy {
-                struck[..n].copy_from_slice(input);
-            }
-        }
-        let contacts = input.iter_mut().zip(&mut self.contacts_n_s);
-        match (busy, self.touched) {
-            (true, true) => contacts.for_each(|(x, contact)| *x += std::mem::take(contact) as f32),
-            // As if it were added to 0.
-            (false, true) => contacts.for_each(|(x, contact)| *x = 0.0 + std::mem::take(contact) as f32),
-            (true, false) => {}
-            (false, false) => input.fill(0.0),
-        }
-        self.reached = busy | std::mem::take(&mut self.touched);
-    }
 }
 
 impl BodySlot {
@@ -379,135 +319,5 @@ impl BodySlot {
             && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
             && self.pickups.as_ref().is_none_or(|pickups| pickups.is_silent(position))
             && self.diffuse.as_ref().is_none_or(|diffuse| diffuse.is_silent(position))
-    }
-
-    /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck
-    /// it.
-    pub(crate) fn render(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
-        let left_out = self.ring(terms, out);
-        self.add_strikes(terms.position, out);
-        left_out
-    }
-
-    /// Modes that must be rung from `position` on; 0 where it is silent.
-    pub(crate) fn modes_that_ring(&self, position: u64) -> usize {
-        if self.is_silent(position) { 0 } else { modal_bank::LANES * self.bank.groups().max(1) }
-    }
-
-    /// [`modes_that_ring`](Self::modes_that_ring), and how many of them a late machine leaves out.
-    pub(crate) fn modes_and_spared(&self, position: u64) -> (usize, usize) {
-        let kept = modal_bank::LANES * self.levels[MODE_LEVELS - 1];
-        let modes = self.modes_that_ring(position);
-        (modes, modes.saturating_sub(kept))
-    }
-
-    /// [`render`](Self::render) without the first samples of strikes
-    /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
-    pub(crate) fn ring(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
-        if self.is_silent(terms.position) {
-            if let Some(pickups) = &mut self.pickups {
-                pickups.rest();
-            }
-            self.end_stretch(terms.position, out.len());
-            return 0;
-        }
-        let left_out = if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
-            self.ring_inputs::<FEW_INPUTS>(terms, out)
-        } else {
-            self.ring_inputs::<MOST_INPUTS>(terms, out)
-        };
-        if let Some(diffuse) = &mut self.diffuse {
-            diffuse.render(terms.position, out);
-        }
-        left_out
-    }
-
-    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first
-    /// samples of strikes.
-    pub(crate) fn add_strikes(&mut self, position: u64, out: &mut [f32]) {
-        self.bursts.render(position, out);
-        self.begin_strikes(position, out);
-    }
-
-    /// Adds what the bank answers to at most `MOST` inputs; how many groups of modes heard nothing.
-    fn ring_inputs<const MOST: usize>(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
-        let n = out.len();
-        if let Some(field) = &mut self.field {
-            field.gather(terms.position, n);
-        }
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST];
-        let mut count = 0;
-        if let Some(field) = &self.field {
-            field.inputs(terms.position, n, |input| {
-                inputs[count] = input;
-                count += 1;
-            });
-        }
-        // Only positions that something reaches are mixed; adding zeros would change nothing.
-        self.places.iter_mut().for_each(|place| place.gather(terms.position, n));
-        for place in &self.places {
-            if place.reached || count == 0 {
-                inputs[count] = Input { impulses: &place.input[..n], gains: &place.gains };
-                count += 1;
-            }
-        }
-        let groups = self.bank.groups();
-        let driven = self.levels[terms.mode_level];
-        if let Some(rub) = self.rub.as_deref_mut().filter(|rub| rub.rubs()) {
-            // Beside another input the only position of a body needs gains too.
-            let plain = inputs[..count].iter_mut().filter(|input| input.gains.is_empty());
-            plain.for_each(|input| input.gains = &self.ones);
-            rub.run(terms.position, n, driven, &self.bank, &inputs[..count]);
-        }
-        if let Some(rub) = self.rub.as_deref().filter(|rub| rub.rubs()) {
-            rub.inputs(n, |input| {
-                inputs[count] = input;
-                count += 1;
-            });
-        }
-        if let Some(pickups) = &mut self.pickups {
-            let strikes = self.field.as_ref().map_or(0, |field| field.strikes_at(terms.position));
-            let heard = inputs[..count].iter().enumerate().map(|(i, input)| {
-                let of = |place: &&Place| std::ptr::eq(place.input.as_ptr(), input.impulses.as_ptr());
-                let own = || self.places.iter().find(of).and_then(|place| place.struck.as_deref());
-                let struck =
-                    if i < strikes { Some(input.impulses) } else { own().map(|struck| &struck[..n]) };
-                Heard { input: *input, struck }
-            });
-            pickups.render(terms.position, n, self.strike_gain, heard);
-        }
-        let inputs = match inputs[..count] {
-            [Input { impulses, gains: [] }] => Inputs::One(impulses),
-            _ => Inputs::Placed(&inputs[..count]),
-        };
-        self.bank.render_leading(driven, terms.position, inputs, out);
-        self.end_stretch(terms.position, n);
-        groups - driven
-    }
-
-    /// The stretch has been rendered, or nothing rings in it.
-    fn end_stretch(&mut self, position: u64, n: usize) {
-        let retuned = self.field.as_mut().and_then(|field| field.end_stretch(position, n, &mut self.bank));
-        if let Some(pickups) = &mut self.pickups
-            && let Some(group) = retuned
-            && let Some(modes) = self.field.as_ref().and_then(|field| field.modes_now(group))
-        {
-            pickups.retune(group, &modes);
-        }
-        let Some(rub) = &mut self.rub else { return };
-        if let Some(group) = retuned
-            && let Some(modes) = self.field.as_ref().and_then(|field| field.modes_now(group))
-        {
-            rub.retune(group, modes);
-        }
-        rub.end_stretch(position + n as u64);
-    }
-
-    /// Adds what the bank leaves out of the first samples of strikes.
-    fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
-        if !self.early.is_empty(position) {
-            let mut next = self.early.drain(position);
-            out.iter_mut().for_each(|y| *y += next());
-        }
     }
 }

@@ -57,5 +57,5 @@ fn spectra(found: &StrokeSurface, group: usize, (low, high): (f64, f64)) -> Pane
     let axis = Axis::new("third octaves, dB", "").range(low, high);
     Panel::new(title, Axis::log("frequency", "Hz"), axis)
         .with(Layer::line("recorded", palette::AUDIO, Series::Points(recorded)))
-        .with(Layer::line("of the surface", palette::HAPTIC, Series::Points(played)))
+        .with(Layer::line("played", palette::HAPTIC, Series::Points(played)))
 }
