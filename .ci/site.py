@@ -8,6 +8,7 @@ import re
 import shutil
 import sys
 from html.parser import HTMLParser
+from os.path import relpath
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
@@ -29,15 +30,16 @@ def staged(text, page):
         there = (page.parent / target).resolve()
         if not there.exists():
             sys.exit(f"error: {page.relative_to(ROOT)}: {target} is not there")
-        docs = ROOT / "docs"
-        if there == ROOT / "README.md" and page.is_relative_to(docs):
-            return match[0].replace("../", "", 1)
-        if page == ROOT / "README.md" and there.is_relative_to(docs):
-            return f"{match[1]}{there.relative_to(docs)}{'#' + anchor if anchor else ''}{match[3]}"
+        docs, anchor = ROOT / "docs", "#" + anchor if anchor else ""
+        if there == ROOT / "README.md":
+            there = docs / "README.md"
         if there.is_relative_to(docs):
-            return match[0]
+            # A README becomes its folder's index.
+            there = there.with_name("index.md") if there.name == "README.md" else there
+            here = docs if page == ROOT / "README.md" else page.parent
+            return f"{match[1]}{Path(relpath(there, here)).as_posix()}{anchor}{match[3]}"
         kind = "tree" if there.is_dir() else "blob"
-        return f"{match[1]}{repository()}/{kind}/main/{there.relative_to(ROOT)}{'#' + anchor if anchor else ''}{match[3]}"
+        return f"{match[1]}{repository()}/{kind}/main/{there.relative_to(ROOT)}{anchor}{match[3]}"
 
     return LINK.sub(moved, text)
 

@@ -22,10 +22,13 @@ install -d "$prefix/include" "$prefix/lib/pkgconfig" "$prefix/lib/cmake/asperity
 install -m 644 asperity.h asperity.hpp asperity_openxr.h "$prefix/include/"
 install -m 755 "$built" "$prefix/lib/$shared"
 install -m 644 "$static" "$prefix/lib/libasperity.a"
-# Names of lines are four fifths of the files, and tell a program of C nothing; names of functions stay.
+# Names of lines and of local functions, and the compiler's own notes, are four fifths of the files, and tell a program of C nothing.
 if command -v strip >/dev/null; then
     chmod u+w "$prefix/lib/$shared" "$prefix/lib/libasperity.a"
-    strip -S "$prefix/lib/$shared" "$prefix/lib/libasperity.a"
+    case "$built" in
+    *.dylib) strip -S "$prefix/lib/$shared" "$prefix/lib/libasperity.a" ;;
+    *) strip --strip-unneeded -R .llvmbc -R .llvmcmd "$prefix/lib/$shared" "$prefix/lib/libasperity.a" ;;
+    esac
 fi
 [ "$link" = libasperity.dylib ] || ln -sf "$shared" "$prefix/lib/libasperity.so.$major"
 ln -sf "$shared" "$prefix/lib/$link"

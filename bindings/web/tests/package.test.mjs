@@ -27,6 +27,12 @@ test('the package holds what it says and nothing else', () => {
   assert.deepEqual(files.map(({ path }) => path).sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'asperity.d.ts', 'asperity.js', 'asperity.wasm', 'engine.js', 'package.json', 'worklet.js']);
 });
 
+test('the worklet of the package needs no file beside it', () => {
+  const worklet = readFileSync(join(DIST, 'package/worklet.js'), 'utf8');
+  assert.match(worklet, /^class Engine /m);
+  assert.doesNotMatch(worklet, /^(import|export) /m);
+});
+
 test('the types say what the modules export', async () => {
   const folder = fresh();
   mkdirSync(join(folder, 'node_modules'));
