@@ -113,7 +113,7 @@ if [ -x "$work/headset" ] && ldconfig -p | grep -q "$loader"; then
     # The layer of this loader's age knows no parametric frames. What it finds wrong it writes, and refuses.
     if ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1; then
         XR_ENABLE_API_LAYERS=$layer XR_CORE_VALIDATION_EXPORT_TYPE=text XR_CORE_VALIDATION_FILE_NAME="$work/validation" \
-            "$work/headset" 10000 "$loader" plain >"$work/plain.log"
+            "$work/headset" 10000 "$loader" plain >"$work/plain.log" 2>&1
         grep -q "^Core Validation output" "$work/plain.log" || fail "OpenXR's validation layer was not loaded"
         [ ! -s "$work/validation" ] || { head -20 "$work/validation" && fail "OpenXR's validation layer finds fault"; }
         ok "OpenXR's validation layer finds nothing wrong with plain vibrations"
