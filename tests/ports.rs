@@ -23,6 +23,7 @@ struct Game {
     renderer: Renderer,
     surface: SurfaceId,
     step: u32,
+    touches: bool,
 }
 
 impl Game {
@@ -40,7 +41,7 @@ impl Game {
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(Body::new(bar()).bus(BusId(1))).unwrap();
         let surface = scene.add_surface(grating(2e-3, 5e-5).body(body)).unwrap();
-        Self { scene, renderer, surface, step: 0 }
+        Self { scene, renderer, surface, step: 0, touches: false }
     }
 
     /// One step of 60 Hz.
@@ -54,7 +55,7 @@ impl Game {
                 closing_m_s: 0.0,
                 ..ContactSample::default()
             };
-            let event = if self.step == 0 {
+            let event = if !self.touches {
                 let hand = ChannelId(u16::from(finger == 2));
                 ContactEvent::begin_with(ContactId(finger), Touching::on(self.surface).felt_by(hand), sample)
             } else {
@@ -62,7 +63,16 @@ impl Game {
             };
             self.scene.report(t, event).unwrap();
         }
-        self.step += 1;
+        (self.touches, self.step) = (true, self.step + 1);
+    }
+
+    /// One step of nothing.
+    fn rest(&mut self) {
+        for finger in (0..3).filter(|_| self.touches) {
+            let end = ContactEvent::end(ContactId(finger));
+            self.scene.report(f64::from(self.step) / 60.0, end).unwrap();
+        }
+        (self.touches, self.step) = (false, self.step + 1);
     }
 
     /// Everything up to the next step, in blocks of `frames`; what left, a channel each.
@@ -312,6 +322,8 @@ fn frames_keep_a_headsets_rules_through_pauses_hitches_and_a_lost_focus_and_coun
             // Three seconds of strokes, two of nothing.
             if step % 300 < 180 {
                 game.report();
+            } else {
+                game.rest();
             }
             game.render(64, &mut left, &mut Nothing);
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

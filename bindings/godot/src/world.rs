@@ -435,7 +435,8 @@ impl AsperityWorld {
 
     /// Rectangles of surfaces that have a frame.
     pub(crate) fn rectangles(&self, ids: &[SurfaceId]) -> Result<Vec<TipSurface>, String> {
-        let running = self.running.as_ref().ok_or("the world is not built; call build(), or see its error")?;
+        let running =
+            self.running.as_ref().ok_or("the world is not built; call build(), or see its error")?;
         running.scene.tip_surfaces(ids).map_err(|error| error.to_string())
     }
 
@@ -477,7 +478,11 @@ impl AsperityWorld {
         self.players.push(player);
     }
 
-    pub(crate) fn report(&mut self, what: &str, event: impl FnOnce() -> Result<ContactEvent, String>) -> bool {
+    pub(crate) fn report(
+        &mut self,
+        what: &str,
+        event: impl FnOnce() -> Result<ContactEvent, String>,
+    ) -> bool {
         let time_s = self.time_s;
         self.tried(what, |running| {
             running.scene.report(time_s, event()?).map_err(|refused| refused.reason.to_string())
