@@ -6,8 +6,8 @@ const FLOOR = 0.02;
 /** Time between two calls, and the length of one, ms. */
 const CALL_MS = 30;
 const LASTS_MS = 80;
-/** The newest samples that are at hand, and by how much a pad's waveform lags: each call takes the place of the one before, so it holds what is needed
- * until the next, and some more. */
+// The newest samples that are at hand, and by how much a pad's waveform lags: each call takes the place of the one before, so it holds what is needed
+// until the next, and some more.
 const SAMPLES = 4096;
 const LAG_S = 0.064;
 

@@ -77,7 +77,8 @@ test('a pad whose playPCM is refused or lacking turns its motors', async () => {
 test('a phone vibrates where no pad is felt, and a desktop does not', async () => {
   for (const pad of [false, true]) {
     const phone = await felt({ pad }, { hasTouch: true, isMobile: true });
-    assert.ok(phone.calls.vibrate.length > 10 && phone.calls.vibrate.every((ms) => ms > 0 && ms <= 80));
+    const times = phone.calls.vibrate;
+    assert.ok(times.filter((ms) => ms > 0).length > 10 && times.every((ms) => ms >= 0 && ms <= 80), `${times}`);
   }
   const desktop = await felt({ pad: true });
   assert.equal(desktop.calls.vibrate.length, 0);
