@@ -5,6 +5,7 @@ use crate::common;
 use crate::counting;
 
 use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet, Pcm, Picture};
+use asperity::live::ports::{FrameCounts, FrameStage, HeadsetFrame, HeadsetFrames};
 use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};
 use asperity::surface::sand::{SandDesign, SandSource};
 use asperity::{
@@ -22,6 +23,7 @@ struct Game {
     renderer: Renderer,
     surface: SurfaceId,
     step: u32,
+    touches: bool,
 }
 
 impl Game {
@@ -39,7 +41,7 @@ impl Game {
         let Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(Body::new(bar()).bus(BusId(1))).unwrap();
         let surface = scene.add_surface(grating(2e-3, 5e-5).body(body)).unwrap();
-        Self { scene, renderer, surface, step: 0 }
+        Self { scene, renderer, surface, step: 0, touches: false }
     }
 
     /// One step of 60 Hz.
@@ -53,7 +55,7 @@ impl Game {
                 closing_m_s: 0.0,
                 ..ContactSample::default()
             };
-            let event = if self.step == 0 {
+            let event = if !self.touches {
                 let hand = ChannelId(u16::from(finger == 2));
                 ContactEvent::begin_with(ContactId(finger), Touching::on(self.surface).felt_by(hand), sample)
             } else {
@@ -61,7 +63,16 @@ impl Game {
             };
             self.scene.report(t, event).unwrap();
         }
-        self.step += 1;
+        (self.touches, self.step) = (true, self.step + 1);
+    }
+
+    /// One step of nothing.
+    fn rest(&mut self) {
+        for finger in (0..3).filter(|_| self.touches) {
+            let end = ContactEvent::end(ContactId(finger));
+            self.scene.report(f64::from(self.step) / 60.0, end).unwrap();
+        }
+        (self.touches, self.step) = (false, self.step + 1);
     }
 
     /// Everything up to the next step, in blocks of `frames`; what left, a channel each.
@@ -265,6 +276,82 @@ fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_aud
     let mut samples = vec![0.0; left.len()];
     let count = pcm.read(&mut samples);
     assert_eq!(pcm.lost(), (left.len() - count) as u64);
+}
+
+/// A runtime that keeps to `XR_EXT_haptic_parametric`: a stream it plays, its beginning, the time of
+/// its last point.
+#[derive(Default)]
+struct Runtime {
+    stream: Option<(f64, i64)>,
+    frames: usize,
+    ended: usize,
+}
+
+impl Runtime {
+    /// One call at `now_s`; panics where the specification refuses it.
+    fn apply(&mut self, frame: &HeadsetFrame, first_frame_s: f64, now_s: f64) {
+        self.stream =
+            self.stream.filter(|(began_s, last_ns)| (now_s - began_s) * 1e9 <= *last_ns as f64 + 5e7);
+        let HeadsetFrame { stage, points, band_hz } = frame;
+        let begins = *stage == FrameStage::First;
+        assert!(begins || self.stream.is_some(), "no stream is running");
+        assert!(points.len() >= if begins { 2 } else { 1 } && points.len() <= 500);
+        let from_ns = if begins { 0 } else { self.stream.unwrap().1 };
+        assert!(points[0].time_ns >= from_ns && points.is_sorted_by_key(|point| point.time_ns));
+        assert!(points.iter().all(|point| (0.0..=1.0).contains(&point.amplitude)));
+        assert!(points.iter().all(|point| (0.0..=1.0).contains(&point.frequency)));
+        assert_eq!(band_hz.is_some(), begins, "the first frame alone says its range");
+        let last_ns = points[points.len() - 1].time_ns;
+        assert!(!begins || points[0].time_ns == 0 && last_ns as f64 >= first_frame_s * 1e9);
+        let began_s = if begins { now_s } else { self.stream.unwrap().0 };
+        self.stream = (*stage != FrameStage::Last).then_some((began_s, last_ns));
+        self.frames += 1;
+        self.ended += usize::from(*stage == FrameStage::Last);
+    }
+}
+
+#[test]
+fn frames_keep_a_headsets_rules_through_pauses_hitches_and_a_lost_focus_and_count_every_point() {
+    for (first_frame_s, full_scale, drift) in [(0.0, 1.0, 1.0), (0.05, 2e-4, 1.0003), (0.3, 1e-5, 0.9997)] {
+        let mut game = Game::new(48_000.0);
+        let from = Feed::Haptic(ChannelId(0));
+        let kind = HeadsetFrames { from, settings: HEADSET, full_scale, first_frame_s, holds_s: 0.25 };
+        let mut port = game.scene.open_port(kind).unwrap();
+        let (mut runtime, mut left, mut random) = (Runtime::default(), [const { Vec::new() }; 4], 1u32);
+        for step in 0..1200 {
+            // Three seconds of strokes, two of nothing.
+            if step % 300 < 180 {
+                game.report();
+            } else {
+                game.rest();
+            }
+            game.render(64, &mut left, &mut Nothing);
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let waits = random >> 24 < 40 || (600..621).contains(&step);
+            if random >> 24 == 255 {
+                (runtime.stream, _) = (None, port.restart());
+            }
+            let now_s = f64::from(step + 1) / 60.0 * drift;
+            while let Some(frame) = (!waits).then(|| port.read(now_s)).flatten() {
+                runtime.apply(&frame, first_frame_s, now_s);
+            }
+        }
+        while port.read(20.1 * drift).is_some() {}
+        let FrameCounts { framed, silent, dropped } = port.counts();
+        let points = reduced(&left[0], HEADSET, 48_000.0).len() as u64;
+        assert_eq!(framed + silent + dropped, points, "{first_frame_s} s");
+        assert!(runtime.frames > 300 && runtime.ended >= 2 && framed > points / 4, "{:?}", port.counts());
+        assert!(dropped < points / 8, "{:?}", port.counts());
+    }
+    let mut game = Game::new(48_000.0);
+    let from = Feed::Haptic(ChannelId(0));
+    let kind = HeadsetFrames { from, settings: HEADSET, full_scale: 1.0, first_frame_s: 0.05, holds_s: 0.25 };
+    for (wrong, field) in [
+        (HeadsetFrames { full_scale: 0.0, ..kind }, "full_scale"),
+        (HeadsetFrames { first_frame_s: -1.0, ..kind }, "first_frame_s"),
+    ] {
+        assert!(game.scene.open_port(wrong).err().unwrap().to_string().starts_with(field));
+    }
 }
 
 #[test]

@@ -95,11 +95,34 @@ ok "hostile calls"
 ok "a program that was compiled with an older header"
 if [ -f /usr/include/openxr/openxr.h ]; then
     # shellcheck disable=SC2086
-    gcc -std=c99 -pedantic $strict $found tests/headset.c -o "$work/headset" $libs
-    "$work/headset" "$([ "$tier" = 2 ] && echo 100000 || echo 10000)"
+    gcc -std=c99 -pedantic $strict $found tests/headset.c -o "$work/headset" -rdynamic $libs -ldl
+    frames="$([ "$tier" = 2 ] && echo 100000 || echo 10000)"
+    "$work/headset" "$frames"
     ok "a headset's runtime refuses no call: strokes, hitches, focus lost, another session"
 else
     skip "no openxr/openxr.h (libopenxr-dev)"
+fi
+loader=libopenxr_loader.so.1 layer=XR_APILAYER_LUNARG_core_validation
+if [ -x "$work/headset" ] && ldconfig -p | grep -q "$loader"; then
+    # shellcheck disable=SC2086
+    gcc -std=c99 -pedantic $strict -shared -fPIC tests/openxr_runtime.c -o "$work/openxr_runtime.so"
+    printf '{"file_format_version": "1.0.0", "runtime": {"library_path": "%s"}}\n' "$work/openxr_runtime.so" >"$work/runtime.json"
+    export XR_RUNTIME_JSON="$work/runtime.json"
+    "$work/headset" "$frames" "$loader"
+    ok "the same through OpenXR's loader"
+    # The layer of this loader's age knows no parametric frames. What it finds wrong it writes, and refuses.
+    if ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1; then
+        XR_ENABLE_API_LAYERS=$layer XR_CORE_VALIDATION_EXPORT_TYPE=text XR_CORE_VALIDATION_FILE_NAME="$work/validation" \
+            "$work/headset" 10000 "$loader" plain >"$work/plain.log" 2>&1
+        grep -q "^Core Validation output" "$work/plain.log" || fail "OpenXR's validation layer was not loaded"
+        [ ! -s "$work/validation" ] || { head -20 "$work/validation" && fail "OpenXR's validation layer finds fault"; }
+        ok "OpenXR's validation layer finds nothing wrong with plain vibrations"
+    else
+        skip "no validation layer of OpenXR (openxr-layer-corevalidation)"
+    fi
+    unset XR_RUNTIME_JSON
+else
+    skip "no $loader (libopenxr-loader1)"
 fi
 "$work/fuzz" 1 300
 ok "random calls"

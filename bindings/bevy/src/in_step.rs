@@ -48,7 +48,11 @@ pub(crate) fn probe_came(
 }
 
 /// A finger that is gone touches nothing.
-pub(crate) fn probe_went(on: On<Remove, TouchProbe>, time: Res<Time<Fixed>>, touch: Option<ResMut<Touch>>) {
+pub(crate) fn toucher_went<C: Component>(
+    on: On<Remove, C>,
+    time: Res<Time<Fixed>>,
+    touch: Option<ResMut<Touch>>,
+) {
     if let Some(mut touch) = touch {
         touch.lift(time.elapsed_secs_f64(), on.entity);
     }

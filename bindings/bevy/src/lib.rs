@@ -7,6 +7,8 @@
 //! | `plugin` | the plugin, the order of its systems |
 //! | `touch` | the game's half as a resource; which entity is which body and surface |
 //! | `component` | what entities are: bodies, surfaces, probes, things of a physics engine |
+//! | `tip` | a tracked fingertip, on a spring |
+//! | `haptics` | a haptic channel on a gamepad and a headset's controller |
 //! | `in_step` | observers that keep the scene as the components say |
 //! | `event` | messages: contacts in, refusals out |
 //! | `output` | where the sound goes |
@@ -18,6 +20,7 @@
 pub mod avian;
 mod component;
 mod event;
+mod haptics;
 mod in_step;
 mod null;
 mod output;
@@ -26,12 +29,15 @@ mod plugin;
 pub mod rapier;
 #[cfg(feature = "seedling")]
 pub mod seedling;
+mod tip;
 mod touch;
 
 pub use asperity;
 pub use component::{TouchBody, TouchProbe, TouchSurface, TouchThing};
 pub use event::{TouchError, TouchEvent};
+pub use haptics::{TouchHeadset, TouchRumble};
 pub use null::NullOutput;
 pub use output::Output;
 pub use plugin::{AsperityPlugin, TouchSystems};
+pub use tip::TouchTip;
 pub use touch::Touch;

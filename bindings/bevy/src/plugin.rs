@@ -2,14 +2,17 @@
 
 use crate::component::TouchProbe;
 use crate::event::{TouchError, TouchEvent};
+use crate::haptics;
 use crate::in_step;
 use crate::null::{self, NullOutput};
 use crate::output::Output;
+use crate::tip::{self, TouchTip};
 use crate::touch::Touch;
 use asperity::files::contact_log::Names;
 use asperity::{Config, Engine, Renderer};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
+use bevy_input::gamepad::GamepadRumbleRequest;
 use bevy_time::{Fixed, Time, Virtual};
 
 /// Set in which touches are reported; in `FixedPostUpdate`.
@@ -50,7 +53,7 @@ impl AsperityPlugin {
 
 impl Plugin for AsperityPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<TouchEvent>().add_message::<TouchError>();
+        app.add_message::<TouchEvent>().add_message::<TouchError>().add_message::<GamepadRumbleRequest>();
         match self.engine() {
             Ok(Engine { scene, renderer, .. }) => {
                 app.insert_resource(Touch::new(scene, Names::default()));
@@ -63,8 +66,13 @@ impl Plugin for AsperityPlugin {
             .add_observer(in_step::surface_came)
             .add_observer(in_step::surface_went)
             .add_observer(in_step::probe_came)
-            .add_observer(in_step::probe_went);
-        app.add_systems(FixedPostUpdate, report.in_set(TouchSystems::Report))
+            .add_observer(in_step::toucher_went::<TouchProbe>)
+            .add_observer(in_step::toucher_went::<TouchTip>)
+            .add_observer(haptics::rumble_came)
+            .add_observer(haptics::rumble_went)
+            .add_observer(haptics::headset_came);
+        app.add_systems(FixedPostUpdate, (tip::follow, report).chain().in_set(TouchSystems::Report))
+            .add_systems(PostUpdate, (haptics::rumble, haptics::frames))
             .add_systems(Last, (pause, tell, null::play.run_if(resource_exists::<NullOutput>)).chain());
     }
 }

@@ -1,5 +1,10 @@
 /* Live haptics against a runtime that is none: it judges each call by the rules of XR_EXT_haptic_parametric (OpenXR 1.1.60) and of
- * XrHapticVibration, loses its focus and its session, and plays in a time of its own. Nothing here links OpenXR. */
+ * XrHapticVibration, loses its focus and its session, and plays in a time of its own. Nothing here links OpenXR.
+ *
+ *     headset FRAMES           calls the runtime itself
+ *     headset FRAMES LOADER    through OpenXR's loader, a library, and the runtime of XR_RUNTIME_JSON (openxr_runtime.c), with what layers there are
+ *     headset FRAMES LOADER plain    without parametric frames, which older layers know nothing of */
+#include <dlfcn.h>
 #include <math.h>
 #include <openxr/openxr.h>
 
@@ -106,10 +111,14 @@ static void judges(void) {
     MUST(judge(&frame) < 0); /* the stream ran dry */
 }
 
-static XrResult XRAPI_CALL apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic) {
+XrResult XRAPI_CALL judged_apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic);
+XrResult XRAPI_CALL judged_stop(XrSession session, const XrHapticActionInfo *info);
+uint64_t judged_session(void);
+
+XrResult XRAPI_CALL judged_apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic) {
     runtime.calls++;
     if (session != (XrSession)(uintptr_t)runtime.session)
-        return XR_ERROR_HANDLE_INVALID;
+        return XR_ERROR_SESSION_LOST;
     if (info->type != XR_TYPE_HAPTIC_ACTION_INFO || info->action != (XrAction)(uintptr_t)7)
         return broken("another action");
     if (!runtime.focused) {
@@ -128,10 +137,74 @@ static XrResult XRAPI_CALL apply(XrSession session, const XrHapticActionInfo *in
     return XR_SUCCESS;
 }
 
-static XrResult XRAPI_CALL stop(XrSession session, const XrHapticActionInfo *info) {
+XrResult XRAPI_CALL judged_stop(XrSession session, const XrHapticActionInfo *info) {
     (void)session, (void)info;
     runtime.streams = 0, runtime.stops++;
     return XR_SUCCESS;
+}
+
+/* Every session has another name; what is said to an older one is refused. */
+uint64_t judged_session(void) {
+    static uint64_t sessions;
+    runtime.streams = 0;
+    return runtime.session = ++sessions;
+}
+
+/* Ways to it: its own functions, or those that the loader gives. */
+static PFN_xrApplyHapticFeedback apply = judged_apply;
+static PFN_xrStopHapticFeedback stop = judged_stop;
+static PFN_xrCreateSession create_session;
+static XrInstance instance;
+static XrAction action = (XrAction)(uintptr_t)7;
+
+static PFN_xrVoidFunction found(PFN_xrGetInstanceProcAddr find, const char *name) {
+    PFN_xrVoidFunction function = NULL;
+    if (find(instance, name, &function) != XR_SUCCESS || function == NULL) {
+        fprintf(stderr, "the loader has no %s\n", name);
+        exit(1);
+    }
+    return function;
+}
+
+static void through(const char *loader) {
+    static const char *extensions[] = {"XR_MND_headless"};
+    void *library = dlopen(loader, RTLD_NOW);
+    PFN_xrGetInstanceProcAddr find;
+    MUST(library != NULL);
+    *(void **)&find = dlsym(library, "xrGetInstanceProcAddr");
+    MUST(find != NULL);
+    XrInstanceCreateInfo wanted;
+    memset(&wanted, 0, sizeof wanted);
+    wanted.type = XR_TYPE_INSTANCE_CREATE_INFO;
+    strcpy(wanted.applicationInfo.applicationName, "headset"), strcpy(wanted.applicationInfo.engineName, "asperity");
+    wanted.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 20);
+    wanted.enabledExtensionCount = 1, wanted.enabledExtensionNames = extensions;
+    MUST(((PFN_xrCreateInstance)found(find, "xrCreateInstance"))(&wanted, &instance) == XR_SUCCESS);
+    XrActionSet set;
+    XrActionSetCreateInfo hands;
+    memset(&hands, 0, sizeof hands);
+    hands.type = XR_TYPE_ACTION_SET_CREATE_INFO;
+    strcpy(hands.actionSetName, "hands"), strcpy(hands.localizedActionSetName, "Hands");
+    MUST(((PFN_xrCreateActionSet)found(find, "xrCreateActionSet"))(instance, &hands, &set) == XR_SUCCESS);
+    XrActionCreateInfo feels;
+    memset(&feels, 0, sizeof feels);
+    feels.type = XR_TYPE_ACTION_CREATE_INFO, feels.actionType = XR_ACTION_TYPE_VIBRATION_OUTPUT;
+    strcpy(feels.actionName, "haptic"), strcpy(feels.localizedActionName, "Haptic");
+    MUST(((PFN_xrCreateAction)found(find, "xrCreateAction"))(set, &feels, &action) == XR_SUCCESS);
+    create_session = (PFN_xrCreateSession)found(find, "xrCreateSession");
+    apply = (PFN_xrApplyHapticFeedback)found(find, "xrApplyHapticFeedback");
+    stop = (PFN_xrStopHapticFeedback)found(find, "xrStopHapticFeedback");
+}
+
+static XrSession opened(void) {
+    if (!create_session)
+        return (XrSession)(uintptr_t)judged_session();
+    XrSession session;
+    XrSessionCreateInfo wanted;
+    memset(&wanted, 0, sizeof wanted);
+    wanted.type = XR_TYPE_SESSION_CREATE_INFO, wanted.systemId = 1;
+    MUST(create_session(instance, &wanted, &session) == XR_SUCCESS);
+    return session;
 }
 
 /* The game: a finger on a rough plate, and a bell. */
@@ -184,24 +257,25 @@ static void render(void) {
 
 static void begin(double first_frame_s, int parametric) {
     memset(&runtime, 0, sizeof runtime);
-    runtime.focused = 1, runtime.parametric = parametric, runtime.session = 3;
+    runtime.focused = 1, runtime.parametric = parametric;
     runtime.first_frame_ns = (XrDuration)(first_frame_s * 1e9), runtime.first_call_s = -1.0;
 }
 
 static double now(double drift) { return 40.0 + time_s * (1.0 + drift); }
 
 /* Strokes that come and go, in a clock that drifts, with hitches of the game, focus lost and a new session. */
-static void frames(uint64_t wanted, double first_frame_s, double drift) {
+static void frames(uint64_t wanted, double first_frame_s, double drift, int parametric) {
     asp_port_config settings;
     asp_xr_hand hand;
     build(100.0, &settings);
-    begin(first_frame_s, 1);
+    begin(first_frame_s, parametric);
     asp_xr_init(&hand, port, &settings, apply, stop);
-    asp_xr_session(&hand, (XrSession)(uintptr_t)3, (XrAction)(uintptr_t)7, 1);
-    asp_xr_parametric(&hand, runtime.first_frame_ns);
+    asp_xr_session(&hand, opened(), action, 1);
+    if (parametric)
+        asp_xr_parametric(&hand, runtime.first_frame_ns);
     hand.full_scale = 0.05;
     uint64_t unread = 0;
-    for (uint64_t block = 0; runtime.frames < wanted; block++) {
+    for (uint64_t block = 0; runtime.frames + runtime.plain < wanted; block++) {
         int touches = block % 2000 < 1700;
         if (block % 6 == 0 && touches)
             report(block % 2000 < 6 ? ASP_BEGIN : ASP_MOVE, 0.12);
@@ -220,10 +294,10 @@ static void frames(uint64_t wanted, double first_frame_s, double drift) {
             runtime.focused = 1;
         if (block % 9000 == 8000) {
             /* The session is lost, and 50 blocks later there is another. */
-            runtime.session++, runtime.streams = 0;
+            runtime.session = 0, runtime.streams = 0;
         }
         if (block % 9000 == 8050)
-            asp_xr_session(&hand, (XrSession)(uintptr_t)runtime.session, (XrAction)(uintptr_t)7, 1);
+            asp_xr_session(&hand, opened(), action, 1);
         asp_xr_tick(&hand, now(drift));
         if (runtime.broken) {
             fprintf(stderr, "frame %llu: %s\n", (unsigned long long)runtime.frames, runtime.rule);
@@ -237,10 +311,12 @@ static void frames(uint64_t wanted, double first_frame_s, double drift) {
     uint64_t made = (uint64_t)((double)stats.position / RATE * settings.rate_hz);
     uint64_t told = hand.played + hand.silent + hand.unfocused + hand.refused + hand.dropped;
     MUST(told <= made + 1 && told + 2 >= made);
-    MUST(runtime.played_amplitude > 0.1);
-    MUST(wanted < 5000 || (hand.silent > 0 && runtime.lasts > 0 && hand.unfocused > 0 && hand.refused > 0 && hand.dropped > 0));
+    MUST(!parametric || runtime.played_amplitude > 0.1);
+    /* Nothing stands between the call and the runtime. */
+    MUST(hand.calls == runtime.calls && hand.calls > 0);
+    MUST(wanted < 5000 || (hand.silent > 0 && (!parametric || (runtime.lasts > 0 && hand.dropped > 0)) && hand.unfocused > 0 && hand.refused > 0));
     printf("%llu frames, %llu points, %llu streams: none refused by a rule; %llu points without focus, %llu without a session, %llu dropped\n",
-           (unsigned long long)runtime.frames, (unsigned long long)hand.played, (unsigned long long)runtime.firsts,
+           (unsigned long long)(runtime.frames + runtime.plain), (unsigned long long)hand.played, (unsigned long long)runtime.firsts,
            (unsigned long long)hand.unfocused, (unsigned long long)hand.refused, (unsigned long long)hand.dropped);
     away();
 }
@@ -258,7 +334,7 @@ static void latency(int parametric) {
     build(200.0, &settings);
     begin(0.05, parametric);
     asp_xr_init(&hand, port, &settings, apply, stop);
-    asp_xr_session(&hand, (XrSession)(uintptr_t)3, (XrAction)(uintptr_t)7, 1);
+    asp_xr_session(&hand, opened(), action, 1);
     if (parametric)
         asp_xr_parametric(&hand, runtime.first_frame_ns);
     hand.full_scale = 1e-2;
@@ -288,11 +364,16 @@ static void latency(int parametric) {
 
 int main(int count, char **words) {
     uint64_t wanted = count > 1 ? strtoull(words[1], NULL, 10) : 100000;
+    int parametric = count < 4;
     judges();
-    frames(wanted, 0.05, 0.0);
-    frames(wanted / 20, 0.0, 3e-4);
-    frames(wanted / 20, 0.12, -3e-4);
-    latency(1), latency(0);
+    if (count > 2)
+        through(words[2]);
+    frames(wanted, 0.05, 0.0, parametric);
+    frames(wanted / 20, 0.0, 3e-4, parametric);
+    frames(wanted / 20, 0.12, -3e-4, 0);
+    if (parametric)
+        frames(wanted / 20, 0.12, -3e-4, 1), latency(1);
+    latency(0);
     puts("headset: every call keeps the rules");
     return 0;
 }

@@ -94,6 +94,11 @@ impl AsperityBody {
 }
 
 impl AsperityBody {
+    /// Its world, while that lives.
+    pub(crate) fn world(&self) -> Option<Gd<AsperityWorld>> {
+        self.world.as_ref().filter(|world| world.is_instance_valid()).cloned()
+    }
+
     fn has_world(&self) -> bool {
         self.world.as_ref().is_some_and(Gd::is_instance_valid)
     }

@@ -9,6 +9,8 @@
 //! | [`surface`] | `AsperitySurface`: what is touched, also from a material's textures |
 //! | [`normal_map`] | heights of a material that has normals only |
 //! | [`finger`] | `AsperityFinger3D`: touches the meshes of a scene |
+//! | [`tip`] | `AsperityTip3D`: a tracked fingertip, on a spring |
+//! | [`haptics`] | `AsperityHaptics`: a channel on a headset's controller and a joypad |
 //! | [`stream`] | `AsperityStream`: the audio buses; its playback is the renderer |
 //! | [`haptic_stream`] | `AsperityHapticStream`: two haptic channels |
 //!
@@ -23,12 +25,14 @@ mod events;
 mod finger;
 mod frames;
 mod haptic_stream;
+mod haptics;
 mod normal_map;
 mod picture;
 mod record;
 mod res_files;
 mod stream;
 mod surface;
+mod tip;
 mod triangles;
 mod world;
 

@@ -7,11 +7,12 @@ use crate::stream::{AsperityStream, MOST_CHANNELS};
 use crate::surface::AsperitySurface;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
-use asperity::live::ports::{Feed, Pcm, PcmPort};
+use asperity::live::ports::{Feed, Pcm, PcmPort, PointSettings, Points, PointsPort, Tone};
 use asperity::load::Overrides;
 use asperity::surface::sand::{SandThread, SandWorker};
 use asperity::{
     ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, LevelPolicy, Scene, SurfaceId,
+    TipSurface,
 };
 use godot::classes::{AudioServer, AudioStreamPlayer, INode, ProjectSettings, SceneTree};
 use godot::prelude::*;
@@ -422,6 +423,23 @@ impl AsperityWorld {
         Engine::from_scene(&file, &overrides).map_err(|error| error.to_string())
     }
 
+    /// Points of a haptic channel, 100 a second in the range of a headset's controller.
+    pub(crate) fn points(&mut self, channel: i64) -> Option<PointsPort> {
+        self.tried("AsperityHaptics", |running| {
+            let channel = events::channel(channel)?.ok_or("channel: must be a haptic channel from 0")?;
+            let settings = PointSettings { rate_hz: 100.0, band_hz: [55.0, 200.0], tone: Tone::Drawn };
+            let kind = Points { from: Feed::Haptic(channel), settings, holds_s: HOLDS_S };
+            running.scene.open_port(kind).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Rectangles of surfaces that have a frame.
+    pub(crate) fn rectangles(&self, ids: &[SurfaceId]) -> Result<Vec<TipSurface>, String> {
+        let running =
+            self.running.as_ref().ok_or("the world is not built; call build(), or see its error")?;
+        running.scene.tip_surfaces(ids).map_err(|error| error.to_string())
+    }
+
     fn level_policy(&self) -> Result<LevelPolicy, String> {
         match self.levels.to_string().as_str() {
             "shared" => Ok(LevelPolicy::Shared),
@@ -460,7 +478,11 @@ impl AsperityWorld {
         self.players.push(player);
     }
 
-    fn report(&mut self, what: &str, event: impl FnOnce() -> Result<ContactEvent, String>) -> bool {
+    pub(crate) fn report(
+        &mut self,
+        what: &str,
+        event: impl FnOnce() -> Result<ContactEvent, String>,
+    ) -> bool {
         let time_s = self.time_s;
         self.tried(what, |running| {
             running.scene.report(time_s, event()?).map_err(|refused| refused.reason.to_string())

@@ -10,6 +10,7 @@
 
 mod analysis;
 mod data_sets;
+mod devices;
 mod error;
 mod fitting;
 mod interrupt;
@@ -33,6 +34,8 @@ mod _native {
     use super::analysis::{analyze, from_normals, metamer, read_picture};
     #[pymodule_export]
     use super::data_sets::{NativeDataSet, build, verify};
+    #[pymodule_export]
+    use super::devices::{LiveFrames, LiveLevels};
     #[pymodule_export]
     use super::fitting::fit;
     #[pymodule_export]

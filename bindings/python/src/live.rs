@@ -107,6 +107,13 @@ fn held<T>(mutex: &Mutex<T>) -> PyResult<MutexGuard<'_, T>> {
         .map_err(|_| PyRuntimeError::new_err("is in use by another thread; give each half one thread"))
 }
 
+impl LiveScene {
+    /// Does something with the scene.
+    pub fn with<T>(&self, work: impl FnOnce(&mut Scene) -> PyResult<T>) -> PyResult<T> {
+        work(&mut held(&self.inner)?.scene)
+    }
+}
+
 #[pymethods]
 impl LiveScene {
     /// Reports the events of a text of JSON Lines, each at its own t.

@@ -349,6 +349,54 @@ def test_a_tip_says_what_it_needs():
         tip.step(0.01, (0, float("nan"), 0))
 
 
+def stroked_live():
+    surface = asp.Solid("granite", 0.2, name="table").on(asp.Body.stock("plate", 0.2, "steel"))
+    return asp.Scene(asp.SceneFile(surface, actuators=[{"full_scale": 1e-4}]), sr=48_000, clock="exact")
+
+
+def play_a_stroke(scene, frames, each):
+    """A second of a stroke, then one of nothing, in 60 frames a second."""
+    for n in range(frames):
+        if n <= 60:
+            at = dict(contact=1, uv=[0.1 + 0.01 * n, 0.5], normal_force_n=1.0)
+            scene.begin(n / 60, surface="table", **at) if n == 0 else scene.move(n / 60, **at) if n < 60 else scene.end(1.0, 1)
+        scene.renderer.render(800)
+        each((n + 1) / 60)
+
+
+def test_a_headset_gets_a_stroke_as_one_stream_of_frames():
+    scene = stroked_live()
+    port = asp.HeadsetFrames(scene, rate_hz=200.0)
+    frames = []
+    play_a_stroke(scene, 120, lambda now_s: frames.extend(port.read(now_s)))
+    assert [frame.stage for frame in (frames[0], frames[-1])] == ["first", "last"]
+    assert {frame.stage for frame in frames[1:-1]} == {"intermediate"} and len(frames) > 50
+    assert frames[0].band_hz == (55.0, 200.0) and all(frame.band_hz is None for frame in frames[1:])
+    times = np.concatenate([frame.time_ns for frame in frames])
+    assert times[0] == 0 and frames[0].time_ns[-1] >= 50_000_000 and np.all(np.diff(times) >= 0)
+    for values in (np.concatenate([frame.amplitude for frame in frames]), np.concatenate([frame.frequency for frame in frames])):
+        assert values.dtype == np.float32 and 0 <= values.min() and 0.01 < values.max() <= 1
+    assert sum(port.counts.values()) == 400 and port.counts["dropped"] == 0
+    port.restart()
+    for wrong, field in ((dict(channel=5), "actuator"), (dict(full_scale=0.0), "full_scale"), (dict(rate_hz=0.0), "rate_hz")):
+        with pytest.raises(ValueError, match=field):
+            asp.HeadsetFrames(scene, **wrong)
+
+
+def test_a_pads_motors_turn_with_a_stroke_and_stop():
+    scene = stroked_live()
+    pad, late = asp.PadLevels(scene, full_scale=0.5), asp.PadLevels(scene, holds_s=0.1)
+    levels = []
+    play_a_stroke(scene, 120, lambda _: levels.extend(pad))
+    levels = np.array(levels)
+    assert levels.shape == (120, 2) and pad.lost == 0 and 0 <= levels.min() and levels.max() <= 1
+    assert levels[10:60].max() > 0.02 and pad.newest() == tuple(levels[-1]) and levels[-1].max() < 1e-3
+    late.newest()
+    assert late.lost > 90
+    with pytest.raises(ValueError, match="full_scale: 0 is refused"):
+        asp.PadLevels(scene, full_scale=0)
+
+
 def test_a_bell_in_slow_motion_rings_lower_and_a_strike_with_a_name_once(tmp_path):
     mode = {"frequency_hz": 800.0, "decay_per_s": 3.0, "amplitude": 0.3, "phase_rad": 0.0}
     modes = {"format": "asperity.modes", "version": 1, "source": "test", "impulse_n_s": 0.01, "modes": [mode]}

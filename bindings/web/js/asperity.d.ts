@@ -210,6 +210,16 @@ export class WebEngine extends EventTarget {
   close(): void;
 }
 
+/** What is felt, on a pad's waveform (`playPCM` of the W3C's draft), else its two motors, else the motor of a phone. */
+export class Actuators {
+  /** `full`: level of a channel at which a motor turns fully, 0.5; `phone`: false leaves a phone's motor alone. */
+  constructor(options?: { full?: number; phone?: boolean });
+  /** Takes the waveform for pads from a running engine's channel 0. */
+  listen(engine: WebEngine): void;
+  /** The `levels` of each `frame`. */
+  feel(levels: [number, number]): void;
+}
+
 /** An engine that plays in a context: an AudioContext, or an OfflineAudioContext with a `log`. */
 export function createEngine(context: BaseAudioContext, options?: EngineOptions): Promise<WebEngine>;
 /** The engine's bytes, and compiled. */

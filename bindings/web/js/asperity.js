@@ -1,7 +1,8 @@
 // asperity in a web page: touch becomes sound and vibration, in an AudioWorklet.
+import { Actuators } from './actuators.js';
 import { Engine, decode, parseLog, prepare, renderLog } from './engine.js';
 
-export { Engine, parseLog, prepare, renderLog };
+export { Actuators, Engine, parseLog, prepare, renderLog };
 
 const WASM = new URL('./asperity.wasm', import.meta.url);
 const WORKLET = new URL('./worklet.js', import.meta.url);

@@ -161,6 +161,7 @@ async function begin() {
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
+  feel.listen(engine);
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;
   mute(state.muted);
@@ -195,7 +196,7 @@ function touched() {
 function frame({ rows, levels, tiles }) {
   state.analyser?.getFloatFrequencyData(spectrum);
   strips.add(rows, spectrum, RATE_HZ, state.surface.wavelength_m);
-  feel.feel(levels, state.muted);
+  if (!state.muted) feel.feel(levels);
   if (tiles && state.surface.watch) picture.change(tiles);
   const last = rows.length - 16;
   [state.speed, state.force, state.touching] = last >= 0 ? [Math.hypot(rows[last + 7], rows[last + 8]), rows[last + 9], rows[last] > 0] : [0, 0, false];
@@ -227,6 +228,7 @@ function wide(on) {
   volume.disconnect();
   engine.node.disconnect();
   engine.connect(volume).connect(state.analyser);
+  feel.listen(engine);
   context.destination.channelCount = on ? 4 : 2;
   if (!on) { volume.connect(context.destination); return; }
   const [split, merge] = [new ChannelSplitterNode(context, { numberOfOutputs: 2 }), new ChannelMergerNode(context, { numberOfInputs: 4 })];

@@ -24,7 +24,7 @@ test('the first program of the README runs with the package installed, and makes
 
 test('the package holds what it says and nothing else', () => {
   const [{ files }] = JSON.parse(execFileSync('npm', ['pack', '--dry-run', '--json'], { cwd: join(DIST, 'package'), encoding: 'utf8' }));
-  assert.deepEqual(files.map(({ path }) => path).sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'asperity.d.ts', 'asperity.js', 'asperity.wasm', 'engine.js', 'package.json', 'worklet.js']);
+  assert.deepEqual(files.map(({ path }) => path).sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'actuators.js', 'asperity.d.ts', 'asperity.js', 'asperity.wasm', 'engine.js', 'package.json', 'worklet.js']);
 });
 
 test('the worklet of the package needs no file beside it', () => {
@@ -90,7 +90,7 @@ test('the program writes the page and serves it on the loopback address, or says
     // As many connections at once as browsers open, all of which would like to stay open: one in some was never answered, and the page stayed white.
     const agent = new Agent({ keepAlive: true, maxSockets: 12 });
     for (let round = 0; round < 40; round++) {
-      await Promise.all(['', 'app.js', 'look.js', 'style.css', 'engine.js', 'hand.js', 'feel.js', 'strips.js', 'worker.js', 'surfaces.js', 'pictures.js', 'asperity.js'].map((path) => new Promise((resolve, reject) => {
+      await Promise.all(['', 'app.js', 'look.js', 'style.css', 'engine.js', 'hand.js', 'feel.js', 'strips.js', 'worker.js', 'surfaces.js', 'pictures.js', 'asperity.js', 'actuators.js'].map((path) => new Promise((resolve, reject) => {
         const request = get(url + path, { agent, timeout: 20000 }, (response) => { response.resume().on('end', () => resolve(assert.equal(response.headers.connection, 'close'))); });
         request.on('timeout', () => request.destroy(new Error(`${path} is not answered`))).on('error', reject);
       })));

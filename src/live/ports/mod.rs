@@ -6,6 +6,7 @@
 //! | [`Pcm`] | the samples of a haptic channel or an audio bus | a controller, a recorder, a level meter |
 //! | [`Force`] | the 3-D force, contact by contact and summed for each hand | a force-feedback device |
 //! | [`Points`] | an amplitude and a frequency some hundred times a second | a phone, a headset |
+//! | [`HeadsetFrames`] | those points as OpenXR's parametric frames | the controllers of a headset |
 //! | [`Levels`] | how hard a heavy and a light motor turn | a pad that rumbles |
 //! | [`Picture`] | the heights of a surface that changes | whoever draws it |
 //!
@@ -30,6 +31,7 @@
 mod feed;
 mod force;
 mod force_rows;
+mod headset_frames;
 mod levels;
 mod pcm;
 mod picture;
@@ -39,6 +41,9 @@ pub use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 pub use feed::Feed;
 pub use force::{Force, ForcePort};
 pub use force_rows::{ForceRow, ForceRows, LAG_TICKS, Of};
+pub use headset_frames::{
+    FrameCounts, FramePoint, FrameStage, HeadsetFrame, HeadsetFrames, HeadsetFramesPort,
+};
 pub use levels::{Levels, LevelsPort};
 pub use pcm::{Pcm, PcmPort};
 pub use picture::{Picture, PicturePort};

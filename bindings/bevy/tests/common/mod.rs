@@ -73,8 +73,13 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
     let Engine { mut scene, renderer, .. } =
         Config { clock: asperity::ClockMode::Exact, ..AsperityPlugin::default().config }.build().unwrap();
     let mut own = Names { surfaces: HashMap::new(), bodies: HashMap::new(), probes: HashMap::new() };
-    for probe in names.probes.keys() {
-        own.probes.insert(probe.clone(), scene.add_probe(asperity::THING_PROBE).unwrap());
+    let mut probes: Vec<&String> = names.probes.keys().collect();
+    probes.sort();
+    for name in probes {
+        let face_m =
+            name.split_once(", face of ").map(|(_, face)| face.trim_end_matches(" m").parse().unwrap());
+        let probe = face_m.map_or(asperity::THING_PROBE, asperity::thing_with_face);
+        own.probes.insert(name.clone(), scene.add_probe(probe).unwrap());
     }
     for i in 0..plates {
         let body = scene.add_body(body()).unwrap();

@@ -1,5 +1,5 @@
 # The add-on in a real Godot: `godot --headless --path . --script test.gd`. Ends with a summary line, and code 1 where something failed.
-extends "surfaces.gd"
+extends "hands.gd"
 
 
 func _initialize() -> void:
@@ -18,6 +18,9 @@ func _initialize() -> void:
 	a_normal_map_that_is_none_says_why_it_is_not_felt()
 	await a_finger_feels_the_mesh_under_it()
 	await what_a_material_repeats_is_felt_repeated()
+	await a_tracked_tip_presses_with_stiffness_times_depth()
+	await a_tip_over_a_surface_without_a_frame_says_so()
+	await a_stroke_is_felt_on_a_headset_and_a_joypad()
 	await what_rolls_is_softer_than_what_slides()
 	await a_strike_gain_turns_blows_down()
 	await a_blow_sounds_as_where_it_lands()

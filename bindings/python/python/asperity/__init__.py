@@ -12,6 +12,7 @@ All numbers are SI units; arrays of heights are metres, rows from top to bottom.
 """
 
 from asperity import batch, contacts, haptics, texture
+from asperity._devices import HeadsetFrame, HeadsetFrames, PadLevels
 from asperity._fit import Fit, fit
 from asperity._live import Renderer, Scene, play
 from asperity._native import VERSION as __version__
@@ -26,7 +27,10 @@ __all__ = [
     "Body",
     "Brownian",
     "Fit",
+    "HeadsetFrame",
+    "HeadsetFrames",
     "Lattice",
+    "PadLevels",
     "Renderer",
     "Sand",
     "Scene",

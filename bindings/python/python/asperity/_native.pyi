@@ -131,6 +131,29 @@ class LiveRenderer:
     def set_channels(self, text: str) -> int: ...
 
 @final
+class LiveFrames:
+    def __new__(
+        cls,
+        scene: LiveScene,
+        channel: int,
+        rate_hz: float,
+        band_hz: Sequence[float],
+        full_scale: float,
+        first_frame_s: float,
+        holds_s: float,
+    ) -> LiveFrames: ...
+    def counts(self) -> tuple[int, int, int]: ...
+    def read(self, now_s: float) -> tuple[str, list[int], list[float], list[float], list[float] | None] | None: ...
+    def restart(self) -> None: ...
+
+@final
+class LiveLevels:
+    def __new__(cls, scene: LiveScene, channel: int, rate_hz: float, holds_s: float) -> LiveLevels: ...
+    def lost(self) -> int: ...
+    def newest(self) -> list[float]: ...
+    def read(self) -> list[float] | None: ...
+
+@final
 class TrackedTip:
     def __new__(
         cls,
