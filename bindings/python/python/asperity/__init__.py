@@ -14,6 +14,7 @@ All numbers are SI units; arrays of heights are metres, rows from top to bottom.
 from asperity import batch, contacts, haptics, texture
 from asperity._fit import Fit, fit
 from asperity._live import Renderer, Scene, play
+from asperity._microphones import Microphones, Thing
 from asperity._native import VERSION as __version__
 from asperity._native import names_of
 from asperity._render import TouchWarning, render, stroke
@@ -27,6 +28,7 @@ __all__ = [
     "Brownian",
     "Fit",
     "Lattice",
+    "Microphones",
     "Renderer",
     "Sand",
     "Scene",
@@ -35,6 +37,7 @@ __all__ = [
     "Solid",
     "Surface",
     "Take",
+    "Thing",
     "Tip",
     "TipStep",
     "TouchWarning",
