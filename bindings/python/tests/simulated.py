@@ -153,12 +153,13 @@ def f1(pairs, within_s=0.02):
 
 
 def features(signal, slips):
-    """Levels of bands in frames of 40 ms, each beside the two before, and the mean slip in each frame."""
+    """Levels of bands in frames of 40 ms, each with its neighbours, and the mean slip in each frame."""
     frame, steps = SR // 25, round(0.04 / STEP_S)
     count = min(len(signal) // frame, len(slips) // steps)
     power = np.abs(np.fft.rfft(signal[: count * frame].reshape(count, frame) * np.hanning(frame), axis=1)) ** 2
     edges = np.unique(np.geomspace(1, power.shape[1], 25).astype(int))
     levels = np.log10(np.add.reduceat(power, edges[:-1], axis=1) + 1e-9)
+    levels = np.hstack([levels, levels[[0, *range(count - 1)]], levels[[*range(1, count), -1]]])
     return levels, slips[: count * steps].reshape(count, steps).mean(1)
 
 
