@@ -1,7 +1,7 @@
 //! Microphones on bodies of simulated worlds: arrays of contacts in, what the pickups read out.
 //!
-//! Each world has an engine of its own and the rules of pairs (`asperity_pairs`); worlds that are due
-//! render at once, on threads that share nothing, so the bits are those of one world alone.
+//! Each world has an engine of its own and the rules of pairs (`asperity_pairs`); worlds that are
+//! due render at once, on threads that share nothing, so the bits are those of one world alone.
 
 use crate::error::refused;
 use crate::pictures;
@@ -27,11 +27,11 @@ const BLOCK: usize = 512;
 /// Name of the probes that things touch with.
 const PROBES: &str = "a thing of the simulator";
 
-/// Thing as Python has it: its body, its surface, material, mobility in 1/kg, form, radius in m, the
-/// rows of its velocity and of the place that this belongs to.
+/// Thing as Python has it: its body, its surface, material, mobility in 1/kg, form, radius in m,
+/// the rows of its velocity and of the place that this belongs to.
 type Told = (Option<String>, Option<String>, String, f32, String, f64, usize, usize);
-/// Rows of MuJoCo's forces at which contacts begin, and true where all rows of one sum up to its normal
-/// force.
+/// Rows of MuJoCo's forces at which contacts begin, and true where all rows of one sum up to its
+/// normal force.
 type Efc<'py> = Option<(PyReadonlyArray1<'py, i32>, bool)>;
 
 /// Worlds with microphones.
@@ -210,7 +210,7 @@ impl Microphones {
         pictures::planar(py, all.iter().flat_map(|heard| heard.read.iter().map(newest)).collect())
     }
 
-    /// Begins these worlds anew.
+    /// Replaces these worlds by new ones.
     fn reset(&self, py: Python<'_>, worlds: Vec<usize>) -> PyResult<()> {
         let inner = &mut *self.held()?;
         let seeds: Vec<u64> = worlds.iter().map(|world| *world as u64).collect();
@@ -330,7 +330,7 @@ impl Worlds {
     }
 }
 
-/// By its frame where it has one, else by the normal.
+/// Mapping by the surface's frame where it has one, else by the normal.
 fn mapping(entry: &SurfaceEntry) -> UvMapping {
     let size_m = [entry.width_m, entry.height_m];
     let plane = entry.frame.and_then(|frame| {

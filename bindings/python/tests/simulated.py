@@ -126,14 +126,15 @@ def truth(model, data, mine):
 
 
 def heard_onsets(signal):
-    """Times at which the level above some kHz, where bodies ring off soon, rises over that of 40 ms before by a factor, none within
-    `APART_S` of another."""
+    """Times at which the level above some kHz, where bodies ring off soon, leaves silence or rises over that of 30 ms before by a factor
+    (found on other seeds), none within `APART_S` of another."""
     frame, found = SR // 500, []
     high = np.diff(signal, 2)
     energy = (high[: len(high) // frame * frame].reshape(-1, frame) ** 2).mean(1) ** 0.5
-    for at in range(len(energy)):
-        before = energy[max(at - 20, 0) : max(at - 1, 0)].max(initial=0.0)
-        if energy[at] > 2e-4 * energy.max() + 3.2 * before and (not found or at - found[-1] > APART_S * 500):
+    floor = 2e-4 * energy.max()
+    for at in np.flatnonzero(energy > floor):
+        before = energy[max(at - 16, 0) : max(at - 1, 0)].max(initial=0.0)
+        if (before < floor or energy[at] > 3.2 * before) and (not found or at - found[-1] > APART_S * 500):
             found.append(at)
     return np.array(found) * frame / SR
 

@@ -1,8 +1,8 @@
 //! One world of colliders as the arrays of a simulator have it: numbers, and no physics engine.
 //!
 //! ```text
-//! closing   (v₁ − v₂) · n, the greater of this step's and the last one's: some simulators have the velocities of a contact's
-//!           instant, others those that the solver has left
+//! closing   (v₁ − v₂) · n, the greater of this step's and the last one's: some simulators have
+//!           the velocities of a contact's instant, others those that the solver has left
 //! force     Σ of the points of a pair, place and normal weighted by it
 //! ```
 
@@ -39,7 +39,7 @@ pub struct Collider {
     pub form: Form,
     /// Radius where it strikes, m; none = as it rolls, or an edge.
     pub radius_m: Option<f64>,
-    /// From places on it to texture coordinates; none = it is struck only.
+    /// Mapping from places on it to texture coordinates; none = it is struck only.
     pub mapping: Option<UvMapping>,
 }
 
@@ -48,7 +48,7 @@ pub struct Collider {
 pub struct Placed {
     /// Origin of its own space, m.
     pub place_m: Vec3,
-    /// From its own space to the world's.
+    /// Turn from its own space to the world's.
     pub turn: Mat3,
     /// Motion about its origin.
     pub motion: Motion,
@@ -61,7 +61,7 @@ pub struct Contact {
     pub colliders: [u32; 2],
     /// Place, m.
     pub point_m: Vec3,
-    /// From the first to the second.
+    /// Direction from the first to the second.
     pub normal: Vec3,
     /// Along the normal, N.
     pub force_n: f32,
@@ -83,7 +83,7 @@ struct Seen<'a> {
 }
 
 impl World {
-    /// After a step of `step_s` in which these pressed; `placed` has an entry for each collider.
+    /// Takes a step of `step_s` in which these pressed; `placed` has an entry for each collider.
     /// What is none, and pairs in which nothing rings, are not heard.
     pub fn step(
         &mut self,
@@ -209,7 +209,8 @@ mod tests {
             probe: None,
         };
         let mapping = Some(UvMapping::ByNormal { span_m: [0.2; 2] });
-        Some(Collider { thing, mobility_per_kg, form: Form::Sphere(0.01), radius_m: None, mapping })
+        let form = if rings { Form::Flat } else { Form::Sphere(0.01) };
+        Some(Collider { thing, mobility_per_kg, form, radius_m: None, mapping })
     }
 
     /// Events of steps in which the second of two moves so fast, pressed with a force.
