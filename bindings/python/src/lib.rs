@@ -15,6 +15,7 @@ mod error;
 mod fitting;
 mod interrupt;
 mod live;
+mod microphones;
 mod photograph;
 mod pictures;
 mod reduction;
@@ -40,6 +41,8 @@ mod _native {
     use super::fitting::fit;
     #[pymodule_export]
     use super::live::{LiveRenderer, LiveScene, open};
+    #[pymodule_export]
+    use super::microphones::Microphones;
     #[pymodule_export]
     use super::photograph::{compare, from_photo, read_photograph};
     #[pymodule_export]

@@ -30,6 +30,14 @@ def test_the_first_program_of_the_readme_writes_two_files(tmp_path, monkeypatch,
     assert "Take(audio=" in capsys.readouterr().out
 
 
+def test_twelve_lines_of_the_readme_give_a_robot_ears(capsys):
+    pytest.importorskip("mujoco")
+    (program,) = [block for block in blocks("README.md") if "mujoco" in block]
+    assert len([line for line in program.splitlines() if line.strip()]) <= 12
+    exec(program, {})
+    assert 1.0 < float(capsys.readouterr().out.split()[0]) < 1e5
+
+
 def test_the_page_for_psychopy_plays_a_stereo_array_a_condition(monkeypatch):
     played = []
 

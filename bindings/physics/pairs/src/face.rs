@@ -5,7 +5,7 @@
 //! (`asperity::Probe::face_m`). Each length is a probe of the scene and one more copy of each map,
 //! so there are two.
 
-use asperity::{AddError, ProbeId, Scene, THING_PROBE, thing_with_face};
+use asperity::{AddError, Probe, ProbeId, Scene, THING_PROBE, thing_with_face};
 use glam::Vec3;
 
 /// Lengths of the faces, m: what is shorter than the first touches with a tip, what is longer than
@@ -63,10 +63,22 @@ impl Probes {
         Ok(Self { tip, faces })
     }
 
+    /// Tables of a scene file for them, each with a name that begins with `name`.
+    pub fn tables(name: &str) -> [(String, Probe); 1 + FACES_M.len()] {
+        let face = |m: f64| (format!("{name}, face of {m} m"), thing_with_face(m));
+        [(name.to_owned(), THING_PROBE), face(FACES_M[0]), face(FACES_M[1])]
+    }
+
+    /// Those of a scene that has them already, in the order of [`tables`](Self::tables).
+    #[must_use]
+    pub fn known([tip, short, long]: [ProbeId; 1 + FACES_M.len()]) -> Self {
+        Self { tip, faces: [short, long] }
+    }
+
     /// Each of them with a name that begins with `name`, for recordings.
     pub fn named(&self, name: &str) -> impl Iterator<Item = (String, ProbeId)> {
-        let faces = FACES_M.iter().zip(self.faces).map(move |(m, id)| (format!("{name}, face of {m} m"), id));
-        std::iter::once((name.to_owned(), self.tip)).chain(faces)
+        let names = Self::tables(name).into_iter().map(|(name, _)| name);
+        names.zip(std::iter::once(self.tip).chain(self.faces))
     }
 
     pub(crate) fn of(&self, face: Option<usize>) -> ProbeId {

@@ -15,6 +15,7 @@ from asperity import batch, contacts, haptics, texture
 from asperity._devices import HeadsetFrame, HeadsetFrames, PadLevels
 from asperity._fit import Fit, fit
 from asperity._live import Renderer, Scene, play
+from asperity._microphones import Microphones, Thing
 from asperity._native import VERSION as __version__
 from asperity._native import names_of
 from asperity._render import TouchWarning, render, stroke
@@ -30,6 +31,7 @@ __all__ = [
     "HeadsetFrame",
     "HeadsetFrames",
     "Lattice",
+    "Microphones",
     "PadLevels",
     "Renderer",
     "Sand",
@@ -39,6 +41,7 @@ __all__ = [
     "Solid",
     "Surface",
     "Take",
+    "Thing",
     "Tip",
     "TipStep",
     "TouchWarning",

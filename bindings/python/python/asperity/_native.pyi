@@ -10,6 +10,7 @@ import numpy.typing as npt
 __all__ = [
     "LiveRenderer",
     "LiveScene",
+    "Microphones",
     "NativeClip",
     "NativeDataSet",
     "TrackedTip",
@@ -152,6 +153,36 @@ class LiveLevels:
     def lost(self) -> int: ...
     def newest(self) -> list[float]: ...
     def read(self) -> list[float] | None: ...
+
+@final
+class Microphones:
+    def __new__(
+        cls,
+        scene: _Path,
+        files: dict[str, Any],
+        things: list[tuple[Any, ...] | None],
+        worlds: int,
+        seed: int,
+        sr: float,
+        step_s: float,
+        keep: int,
+        gravity: list[float] | None,
+        threads: int,
+        log: bool,
+    ) -> Microphones: ...
+    @property
+    def channels(self) -> int: ...
+    @property
+    def latency_samples(self) -> int: ...
+    def log(self, world: int) -> str: ...
+    def read(self, samples: int) -> _F32: ...
+    def reset(self, worlds: list[int]) -> None: ...
+    def stats(self, world: int) -> str: ...
+    def step(
+        self, first: int, t: _F64, world: npt.NDArray[np.int64] | None, pairs: npt.NDArray[np.int32], point: _F64, normal: _F64,
+        force: _F64, restitution: float, place: _F64, turn: _F64, velocity: _F64, about: _F64,
+        efc: tuple[npt.NDArray[np.int32], bool] | None = None,
+    ) -> None: ...
 
 @final
 class TrackedTip:

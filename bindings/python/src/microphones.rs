@@ -1,0 +1,537 @@
+//! Microphones on bodies of simulated worlds: arrays of contacts in, what the pickups read out.
+//!
+//! Each world has an engine of its own and the rules of pairs (`asperity_pairs`); worlds that are
+//! due render at once, on threads that share nothing, so the bits are those of one world alone.
+
+use crate::error::refused;
+use crate::pictures;
+use crate::sources::Sources;
+use asperity::files::FileError;
+use asperity::files::scene_file::{ActuatorEntry, AudioEntry, SceneFile, SurfaceEntry};
+use asperity::load::{Maps, Overrides};
+use asperity::{ContactEvent, Engine, Material, ProbeId, RigidMotion, UvMapping, UvTriangle};
+use asperity_pairs::{Collider, Contact, Form, Mat3, Motion, Placed, Probes, Thing, Vec3, World};
+use numpy::ndarray::{ArrayView1, ArrayView2, ArrayView3};
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::Mutex;
+
+/// Samples that may wait before they are rendered, and reports: an engine takes 4096.
+const DUE: (u64, usize) = (2048, 1024);
+/// Samples a block.
+const BLOCK: usize = 512;
+/// Name of the probes that things touch with.
+const PROBES: &str = "a thing of the simulator";
+
+/// Thing as Python has it: its body, its surface, material, mobility in 1/kg, form, radius in m,
+/// the rows of its velocity and of the place that this belongs to.
+type Told = (Option<String>, Option<String>, String, f32, String, f64, usize, usize);
+/// Rows of MuJoCo's forces at which contacts begin, and true where all rows of one sum up to its
+/// normal force.
+type Efc<'py> = Option<(PyReadonlyArray1<'py, i32>, bool)>;
+
+/// Worlds with microphones.
+#[pyclass(frozen, module = "asperity._native")]
+pub struct Microphones {
+    inner: Mutex<Worlds>,
+    #[pyo3(get)]
+    channels: usize,
+    #[pyo3(get)]
+    latency_samples: usize,
+}
+
+struct Worlds {
+    file: SceneFile,
+    sources: Sources,
+    maps: Maps,
+    settings: Settings,
+    things: Vec<Option<Told>>,
+    all: Vec<Heard>,
+}
+
+#[derive(Clone, Copy)]
+struct Settings {
+    seed: u64,
+    sample_rate_hz: f64,
+    step_s: f64,
+    keep: usize,
+    gravity_m_s2: Option<Vec3>,
+    threads: usize,
+    log: bool,
+}
+
+/// A world, and what its microphones have read.
+struct Heard {
+    engine: Engine,
+    rules: World,
+    probes: Probes,
+    colliders: Vec<Option<Collider>>,
+    placed: Vec<Placed>,
+    contacts: Vec<Contact>,
+    events: Vec<ContactEvent>,
+    /// First stamp and last one, s.
+    time_s: Option<[f64; 2]>,
+    reported: usize,
+    rendered: u64,
+    read: Vec<VecDeque<f32>>,
+}
+
+/// Arrays of a step of some worlds.
+struct Step<'a> {
+    time_s: ArrayView1<'a, f64>,
+    place: ArrayView3<'a, f64>,
+    turn: ArrayView3<'a, f64>,
+    velocity: ArrayView3<'a, f64>,
+    about: ArrayView3<'a, f64>,
+}
+
+#[pymethods]
+impl Microphones {
+    #[new]
+    #[allow(clippy::too_many_arguments, reason = "they are those of a class of Python")]
+    fn new(
+        py: Python<'_>,
+        scene: PathBuf,
+        files: &Bound<'_, PyDict>,
+        things: Vec<Option<Told>>,
+        worlds: usize,
+        seed: u64,
+        sr: f64,
+        step_s: f64,
+        keep: usize,
+        gravity: Option<[f32; 3]>,
+        threads: usize,
+        log: bool,
+    ) -> PyResult<Self> {
+        let sources = Sources::of(files)?;
+        let mut file = SceneFile::load_from(&sources, &scene).map_err(|error| sources.told(error))?;
+        // Nothing is felt, and levels of what is heard do not count: no trial has to find them.
+        file.actuators = vec![ActuatorEntry { full_scale: Some(1.0), ..ActuatorEntry::default() }];
+        file.audio.iter_mut().for_each(|bus: &mut AudioEntry| bus.gain = bus.gain.or(Some(1.0)));
+        file.bodies.iter_mut().for_each(|body| body.strike_gain = body.strike_gain.or(Some(1.0)));
+        file.probes.extend(Probes::tables(PROBES));
+        let settings = Settings {
+            seed,
+            sample_rate_hz: sr,
+            step_s,
+            keep,
+            gravity_m_s2: gravity.map(Vec3::from_array),
+            threads: threads.max(1),
+            log,
+        };
+        let mut inner = Worlds { file, sources, maps: Maps::default(), settings, things, all: Vec::new() };
+        let seeds: Vec<u64> = (0..worlds as u64).collect();
+        inner.all = py.detach(|| inner.built(&seeds)).map_err(|error| inner.sources.told(error))?;
+        let Some(first) = inner.all.first() else {
+            return Err(refused("worlds: 0 is refused; must be 1 or more"));
+        };
+        let (channels, latency_samples) = (first.read.len(), first.engine.renderer.audio_latency_samples());
+        Ok(Self { inner: Mutex::new(inner), channels, latency_samples })
+    }
+
+    /// Takes a step of the worlds from `first` on. Nothing has changed where it is refused.
+    #[allow(clippy::too_many_arguments, reason = "an array each")]
+    #[pyo3(signature = (first, t, world, pairs, point, normal, force, restitution, place, turn, velocity, about, efc=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        first: usize,
+        t: PyReadonlyArray1<'_, f64>,
+        world: Option<PyReadonlyArray1<'_, i64>>,
+        pairs: PyReadonlyArray2<'_, i32>,
+        point: PyReadonlyArray2<'_, f64>,
+        normal: PyReadonlyArray2<'_, f64>,
+        force: PyReadonlyArray1<'_, f64>,
+        restitution: f32,
+        place: PyReadonlyArray3<'_, f64>,
+        turn: PyReadonlyArray3<'_, f64>,
+        velocity: PyReadonlyArray3<'_, f64>,
+        about: PyReadonlyArray3<'_, f64>,
+        efc: Efc<'_>,
+    ) -> PyResult<()> {
+        let mut inner = self.held()?;
+        let Worlds { settings, things, all, .. } = &mut *inner;
+        let step = Step {
+            time_s: t.as_array(),
+            place: place.as_array(),
+            turn: turn.as_array(),
+            velocity: velocity.as_array(),
+            about: about.as_array(),
+        };
+        let count = step.time_s.len();
+        let Some(worlds) = all.get_mut(first..first + count) else {
+            return Err(refused(format!("t: has {count} times; must have one for each world")));
+        };
+        step.check(worlds, things).map_err(refused)?;
+        let points = Points {
+            world: world.as_ref().map(|world| world.as_array()),
+            pairs: pairs.as_array(),
+            point: point.as_array(),
+            normal: normal.as_array(),
+            force: force.as_array(),
+            efc: efc.as_ref().map(|(address, sums)| (address.as_array(), *sums)),
+            restitution,
+        };
+        points.check(count, things.len()).map_err(refused)?;
+        points.deal(worlds);
+        for (index, heard) in worlds.iter_mut().enumerate() {
+            heard.step(index, &step, things, settings);
+        }
+        let rate_hz = settings.sample_rate_hz;
+        if worlds.iter().any(|heard| heard.is_due(rate_hz)) {
+            py.detach(|| rendered(worlds, settings, |heard| heard.is_due(rate_hz)));
+        }
+        Ok(())
+    }
+
+    /// The newest samples of every world: (worlds × channels, samples).
+    fn read<'py>(&self, py: Python<'py>, samples: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let mut inner = self.held()?;
+        let Worlds { settings, all, .. } = &mut *inner;
+        let keep = settings.keep;
+        if samples > keep {
+            let s = |n: usize| n as f64 / settings.sample_rate_hz;
+            return Err(refused(format!(
+                "seconds: {} is refused; must be at most keep, {}",
+                s(samples),
+                s(keep)
+            )));
+        }
+        py.detach(|| rendered(all, settings, |_| true));
+        let newest = |read: &VecDeque<f32>| {
+            let silent = samples.saturating_sub(read.len());
+            let from = read.len() - (samples - silent);
+            std::iter::repeat_n(0.0, silent).chain(read.range(from..).copied()).collect()
+        };
+        pictures::planar(py, all.iter().flat_map(|heard| heard.read.iter().map(newest)).collect())
+    }
+
+    /// Replaces these worlds by new ones.
+    fn reset(&self, py: Python<'_>, worlds: Vec<usize>) -> PyResult<()> {
+        let inner = &mut *self.held()?;
+        let seeds: Vec<u64> = worlds.iter().map(|world| *world as u64).collect();
+        let built = py.detach(|| inner.built(&seeds)).map_err(|error| inner.sources.told(error))?;
+        for (world, new) in worlds.into_iter().zip(built) {
+            inner.all[world] = new;
+        }
+        Ok(())
+    }
+
+    /// Contact log of a world since its last call, as JSON Lines.
+    fn log(&self, world: usize) -> PyResult<String> {
+        let mut inner = self.held()?;
+        if !inner.settings.log {
+            return Err(refused("log: was not kept; open the microphones with log=True"));
+        }
+        let Some(heard) = inner.all.get_mut(world) else {
+            return Err(refused(format!("world: {world} is unknown")));
+        };
+        let mut text = Vec::new();
+        heard.engine.scene.stop_recording().write(&mut text)?;
+        heard.engine.scene.start_recording(&heard.engine.names);
+        String::from_utf8(text).map_err(refused)
+    }
+
+    /// Statistics of the engine of a world, as JSON.
+    fn stats(&self, world: usize) -> PyResult<String> {
+        let inner = self.held()?;
+        let heard = inner.all.get(world).ok_or_else(|| refused(format!("world: {world} is unknown")))?;
+        serde_json::to_string(&heard.engine.scene.stats()).map_err(refused)
+    }
+}
+
+impl Microphones {
+    fn held(&self) -> PyResult<std::sync::MutexGuard<'_, Worlds>> {
+        let busy = |_| PyRuntimeError::new_err("microphones: are in use by another thread; give them one");
+        self.inner.try_lock().map_err(busy)
+    }
+}
+
+impl Worlds {
+    /// Worlds of these seeds over the first one's.
+    fn built(&mut self, seeds: &[u64]) -> Result<Vec<Heard>, FileError> {
+        seeds.iter().map(|seed| self.open(*seed)).collect()
+    }
+
+    fn open(&self, world: u64) -> Result<Heard, FileError> {
+        let Settings { seed, sample_rate_hz, .. } = self.settings;
+        let overrides = Overrides {
+            files: &self.sources,
+            maps: Some(&self.maps),
+            seed: Some(seed.wrapping_add(world)),
+            sample_rate_hz: Some(sample_rate_hz),
+            ..Overrides::default()
+        };
+        let mut engine = Engine::from_scene(&self.file, &overrides)?;
+        let probe = |(name, _): (String, _)| engine.names.probes[&name];
+        let probes = Probes::known(Probes::tables(PROBES).map(probe) as [ProbeId; 3]);
+        let colliders = self.things.iter().map(|told| told.as_ref().map(|told| self.collider(told, &engine)));
+        let colliders = colliders.map(Option::transpose).collect::<Result<Vec<_>, _>>()?;
+        if self.settings.log {
+            engine.scene.start_recording(&engine.names);
+        }
+        Ok(Heard {
+            rules: World::default(),
+            probes,
+            placed: vec![Placed::default(); colliders.len()],
+            colliders,
+            contacts: Vec::new(),
+            events: Vec::new(),
+            time_s: None,
+            reported: 0,
+            rendered: 0,
+            read: vec![VecDeque::new(); engine.renderer.pickup_channels()],
+            engine,
+        })
+    }
+
+    fn collider(&self, told: &Told, engine: &Engine) -> Result<Collider, FileError> {
+        let (body, surface, material, mobility_per_kg, form, radius_m, ..) = told;
+        let unknown = |kind, name: &str| {
+            FileError::new(kind, format!("\"{name}\" is unknown"), "name one of the scene's")
+        };
+        let names = &engine.names;
+        let body =
+            body.as_ref().map(|name| names.bodies.get(name).copied().ok_or_else(|| unknown("body", name)));
+        let entry = surface.as_ref().map(|name| {
+            self.file
+                .surfaces
+                .iter()
+                .find(|entry| entry.name == *name)
+                .ok_or_else(|| unknown("surface", name))
+        });
+        let entry = entry.transpose()?;
+        let form = match form.as_str() {
+            "sphere" => Form::Sphere(*radius_m),
+            "capsule" => Form::Capsule(*radius_m),
+            "cylinder" => Form::Cylinder,
+            "flat" => Form::Flat,
+            other => {
+                return Err(FileError::new(
+                    "form",
+                    format!("\"{other}\" is unknown"),
+                    "must be flat, sphere, capsule or cylinder",
+                ));
+            }
+        };
+        let thing = Thing {
+            material: Material::by_name(material).ok_or_else(|| unknown("material", material))?,
+            body: body.transpose()?,
+            surface: entry.map(|entry| names.surfaces[&entry.name]),
+            actuator: None,
+            probe: None,
+        };
+        let mapping = entry.map(mapping);
+        Ok(Collider { thing, mobility_per_kg: *mobility_per_kg, form, radius_m: None, mapping })
+    }
+}
+
+/// Mapping by the surface's frame where it has one, else by the normal.
+fn mapping(entry: &SurfaceEntry) -> UvMapping {
+    let size_m = [entry.width_m, entry.height_m];
+    let plane = entry.frame.and_then(|frame| {
+        let corners_uv = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        UvTriangle::new(corners_uv.map(|uv| frame.point_m(uv, size_m)), corners_uv)
+    });
+    plane.map_or(UvMapping::ByNormal { span_m: size_m }, UvMapping::Plane)
+}
+
+/// Points of contact of a step.
+struct Points<'a> {
+    world: Option<ArrayView1<'a, i64>>,
+    pairs: ArrayView2<'a, i32>,
+    point: ArrayView2<'a, f64>,
+    normal: ArrayView2<'a, f64>,
+    force: ArrayView1<'a, f64>,
+    /// First rows in `force`; true where a normal force is the sum of all.
+    efc: Option<(ArrayView1<'a, i32>, bool)>,
+    restitution: f32,
+}
+
+impl Points<'_> {
+    fn check(&self, worlds: usize, things: usize) -> Result<(), String> {
+        let rows = self.pairs.nrows();
+        let shape = |name: &str, shape: &[usize], right: &[usize]| match shape == right {
+            true => Ok(()),
+            false => Err(format!("{name}: has the shape {shape:?}; must be {right:?}")),
+        };
+        shape("pairs", self.pairs.shape(), &[rows, 2])?;
+        shape("point", self.point.shape(), &[rows, 3])?;
+        shape("normal", self.normal.shape(), &[rows, 3])?;
+        shape("force", &[self.efc.map_or(self.force.len(), |(address, _)| address.len())], &[rows])?;
+        if let Some(world) = self.world {
+            shape("world", world.shape(), &[rows])?;
+            let known = |world: &i64| usize::try_from(*world).is_ok_and(|world| world < worlds);
+            if let Some(row) = world.iter().position(|world| !known(world)) {
+                return Err(format!("world: row {row} is {}; must be 0 to {}", world[row], worlds - 1));
+            }
+        }
+        let known = |thing: &i32| usize::try_from(*thing).is_ok_and(|thing| thing < things);
+        if let Some(row) = self.pairs.rows().into_iter().position(|pair| !pair.iter().all(known)) {
+            return Err(format!("pairs: row {row} is {}; must be 0 to {}", self.pairs.row(row), things - 1));
+        }
+        finite("point", self.point.iter())?;
+        finite("normal", self.normal.iter())?;
+        finite("force", self.force.iter())
+    }
+
+    /// Deals them to their worlds.
+    fn deal(&self, worlds: &mut [Heard]) {
+        let space = |row: ArrayView1<'_, f64>| Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32);
+        for row in 0..self.pairs.nrows() {
+            let world = self.world.map_or(0, |world| world[row] as usize);
+            let colliders = [0, 1].map(|k| self.pairs[[row, k]] as u32);
+            let contact = Contact {
+                colliders,
+                point_m: space(self.point.row(row)),
+                normal: space(self.normal.row(row)),
+                force_n: self.force_n(row) as f32,
+                restitution: self.restitution,
+            };
+            worlds[world].contacts.push(contact);
+        }
+    }
+
+    fn force_n(&self, row: usize) -> f64 {
+        let Some((address, sums)) = self.efc else { return self.force[row] };
+        // What MuJoCo leaves out of its solver has no row.
+        let begins = |row: &i32| usize::try_from(*row).ok();
+        let Some(from) = begins(&address[row]) else { return 0.0 };
+        // Contacts come last among the rows, one behind the other.
+        let next = address.iter().skip(row + 1).find_map(begins).filter(|_| sums);
+        let until = next.unwrap_or(if sums { self.force.len() } else { from + 1 });
+        self.force.iter().take(until).skip(from).sum()
+    }
+}
+
+fn finite<'a>(name: &str, mut values: impl Iterator<Item = &'a f64>) -> Result<(), String> {
+    match values.position(|value| !value.is_finite()) {
+        Some(index) => Err(format!("{name}: number {index} is not finite; must be a number")),
+        None => Ok(()),
+    }
+}
+
+impl Step<'_> {
+    fn check(&self, worlds: &[Heard], things: &[Option<Told>]) -> Result<(), String> {
+        let count = worlds.len();
+        let rows = |row: fn(&Told) -> usize| things.iter().flatten().map(row).max().map_or(0, |row| row + 1);
+        for (name, array, least, columns) in [
+            ("place", &self.place, things.len(), 3),
+            ("rotation", &self.turn, things.len(), 9),
+            ("velocity", &self.velocity, rows(|told| told.6), 6),
+            ("about", &self.about, rows(|told| told.7), 3),
+        ] {
+            let shape = array.shape();
+            if shape[0] != count || shape[1] < least || shape[2] != columns {
+                return Err(format!(
+                    "{name}: has the shape {shape:?}; must be [{count}, {least}, {columns}]"
+                ));
+            }
+            finite(name, array.iter())?;
+        }
+        finite("t", self.time_s.iter())?;
+        for (index, (heard, t)) in worlds.iter().zip(self.time_s).enumerate() {
+            if let Some([_, last]) = heard.time_s.filter(|[_, last]| t <= last) {
+                return Err(format!("t: world {index} is at {t} s after {last} s; must grow, or be reset"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Place and motion of a thing in a world.
+    fn placed(&self, world: usize, thing: usize, (row, about): (usize, usize)) -> Placed {
+        let space = |array: &ArrayView3<'_, f64>, row: usize, from: usize| {
+            Vec3::from_array([0, 1, 2].map(|k| array[[world, row, from + k]] as f32))
+        };
+        let place_m = space(&self.place, thing, 0);
+        let turn = Mat3::from_cols_array(&std::array::from_fn(|k| self.turn[[world, thing, k]] as f32));
+        let about = Motion {
+            angular_rad_s: space(&self.velocity, row, 0),
+            linear_m_s: space(&self.velocity, row, 3),
+            centre_m: space(&self.about, about, 0),
+        };
+        let motion = Motion { linear_m_s: about.at(place_m), centre_m: place_m, ..about };
+        // Rows of numpy are columns of the matrix.
+        Placed { place_m, turn: turn.transpose(), motion }
+    }
+}
+
+impl Heard {
+    fn step(&mut self, world: usize, step: &Step<'_>, things: &[Option<Told>], settings: &Settings) {
+        let t = step.time_s[world];
+        let is_first = self.time_s.is_none();
+        let [first, last] = self.time_s.unwrap_or([t, t - settings.step_s]);
+        self.time_s = Some([first, t]);
+        let step_s = (t - last) as f32;
+        for (thing, told) in things.iter().enumerate() {
+            let (Some(told), Some(collider)) = (told, &self.colliders[thing]) else { continue };
+            let before = self.placed[thing].motion;
+            let placed = step.placed(world, thing, (told.6, told.7));
+            self.placed[thing] = placed;
+            if let (Some(gravity_m_s2), Some(body)) = (settings.gravity_m_s2, collider.thing.body) {
+                let gained = if is_first { Vec3::ZERO } else { placed.motion.linear_m_s - before.linear_m_s };
+                let own = |v: Vec3| (placed.turn.transpose() * v).to_array().map(f64::from);
+                let motion = RigidMotion {
+                    acceleration_m_s2: own(gained / step_s),
+                    gravity_m_s2: own(gravity_m_s2),
+                    angular_velocity_rad_s: own(placed.motion.angular_rad_s),
+                    ..RigidMotion::default()
+                };
+                self.events.push(ContactEvent::Motion { body, motion });
+            }
+        }
+        let arrays = (&self.colliders[..], &self.placed[..]);
+        self.rules.step(arrays, &mut self.contacts, (self.probes, step_s), &mut self.events);
+        self.contacts.clear();
+        self.reported += self.events.len();
+        for event in self.events.drain(..) {
+            // What is refused is counted in the statistics.
+            let _ = self.engine.scene.report(t - first, event);
+        }
+    }
+
+    /// Samples that have to be rendered up to the last step.
+    fn due(&self, rate_hz: f64) -> u64 {
+        let until = self.time_s.map_or(0.0, |[first, last]| (last - first) * rate_hz);
+        (until as u64).saturating_sub(self.rendered)
+    }
+
+    fn is_due(&self, rate_hz: f64) -> bool {
+        self.due(rate_hz) >= DUE.0 || self.reported >= DUE.1
+    }
+
+    fn render(&mut self, settings: &Settings) {
+        let mut block = vec![[0.0f32; BLOCK]; self.read.len()];
+        let mut left = self.due(settings.sample_rate_hz) as usize;
+        self.rendered += left as u64;
+        self.reported = 0;
+        while left > 0 {
+            let n = left.min(BLOCK);
+            let mut out: Vec<&mut [f32]> = block.iter_mut().map(|block| &mut block[..n]).collect();
+            self.engine.renderer.render_with_pickups(&mut [], &mut [], &mut out);
+            for (read, block) in self.read.iter_mut().zip(&block) {
+                read.extend(&block[..n]);
+                read.drain(..read.len().saturating_sub(settings.keep));
+            }
+            left -= n;
+        }
+    }
+}
+
+/// Renders the worlds that are due, on as many threads as there may be.
+fn rendered(worlds: &mut [Heard], settings: &Settings, is_due: impl Fn(&Heard) -> bool) {
+    let mut due: Vec<&mut Heard> = worlds.iter_mut().filter(|heard| is_due(heard)).collect();
+    let share = due.len().div_ceil(settings.threads).max(1);
+    std::thread::scope(|scope| {
+        let mut shares = due.chunks_mut(share);
+        let own = shares.next();
+        for others in shares {
+            scope.spawn(|| others.iter_mut().for_each(|heard| heard.render(settings)));
+        }
+        own.into_iter().flatten().for_each(|heard| heard.render(settings));
+    });
+}
