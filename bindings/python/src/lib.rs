@@ -21,6 +21,7 @@ mod reduction;
 mod rendering;
 mod shaping;
 mod sources;
+mod stepped;
 mod strokes;
 mod tracked;
 mod watch;
