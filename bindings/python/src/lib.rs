@@ -22,6 +22,7 @@ mod reduction;
 mod rendering;
 mod shaping;
 mod sources;
+mod stepped;
 mod strokes;
 mod tracked;
 mod watch;

@@ -6,12 +6,12 @@
 use crate::error::refused;
 use crate::pictures;
 use crate::sources::Sources;
+use crate::stepped::{Points, Step, Told};
 use asperity::files::FileError;
 use asperity::files::scene_file::{ActuatorEntry, AudioEntry, SceneFile, SurfaceEntry};
 use asperity::load::{Maps, Overrides};
 use asperity::{ContactEvent, Engine, Material, ProbeId, RigidMotion, UvMapping, UvTriangle};
-use asperity_pairs::{Collider, Contact, Form, Mat3, Motion, Placed, Probes, Thing, Vec3, World};
-use numpy::ndarray::{ArrayView1, ArrayView2, ArrayView3};
+use asperity_pairs::{Collider, Contact, Form, Placed, Probes, Thing, Vec3, World};
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -27,9 +27,6 @@ const BLOCK: usize = 512;
 /// Name of the probes that things touch with.
 const PROBES: &str = "a thing of the simulator";
 
-/// Thing as Python has it: its body, its surface, material, mobility in 1/kg, form, radius in m,
-/// the rows of its velocity and of the place that this belongs to.
-type Told = (Option<String>, Option<String>, String, f32, String, f64, usize, usize);
 /// Rows of MuJoCo's forces at which contacts begin, and true where all rows of one sum up to its
 /// normal force.
 type Efc<'py> = Option<(PyReadonlyArray1<'py, i32>, bool)>;
@@ -78,15 +75,6 @@ struct Heard {
     reported: usize,
     rendered: u64,
     read: Vec<VecDeque<f32>>,
-}
-
-/// Arrays of a step of some worlds.
-struct Step<'a> {
-    time_s: ArrayView1<'a, f64>,
-    place: ArrayView3<'a, f64>,
-    turn: ArrayView3<'a, f64>,
-    velocity: ArrayView3<'a, f64>,
-    about: ArrayView3<'a, f64>,
 }
 
 #[pymethods]
@@ -166,7 +154,8 @@ impl Microphones {
         let Some(worlds) = all.get_mut(first..first + count) else {
             return Err(refused(format!("t: has {count} times; must have one for each world")));
         };
-        step.check(worlds, things).map_err(refused)?;
+        let last_s: Vec<_> = worlds.iter().map(|heard| heard.time_s.map(|[_, last]| last)).collect();
+        step.check(&last_s, things).map_err(refused)?;
         let points = Points {
             world: world.as_ref().map(|world| world.as_array()),
             pairs: pairs.as_array(),
@@ -177,7 +166,7 @@ impl Microphones {
             restitution,
         };
         points.check(count, things.len()).map_err(refused)?;
-        points.deal(worlds);
+        points.contacts().for_each(|(world, contact)| worlds[world].contacts.push(contact));
         for (index, heard) in worlds.iter_mut().enumerate() {
             heard.step(index, &step, things, settings);
         }
@@ -188,19 +177,10 @@ impl Microphones {
         Ok(())
     }
 
-    /// The newest samples of every world: (worlds × channels, samples).
+    /// Newest samples of every world, silence before the first: (worlds × channels, samples).
     fn read<'py>(&self, py: Python<'py>, samples: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let mut inner = self.held()?;
         let Worlds { settings, all, .. } = &mut *inner;
-        let keep = settings.keep;
-        if samples > keep {
-            let s = |n: usize| n as f64 / settings.sample_rate_hz;
-            return Err(refused(format!(
-                "seconds: {} is refused; must be at most keep, {}",
-                s(samples),
-                s(keep)
-            )));
-        }
         py.detach(|| rendered(all, settings, |_| true));
         let newest = |read: &VecDeque<f32>| {
             let silent = samples.saturating_sub(read.len());
@@ -338,126 +318,6 @@ fn mapping(entry: &SurfaceEntry) -> UvMapping {
         UvTriangle::new(corners_uv.map(|uv| frame.point_m(uv, size_m)), corners_uv)
     });
     plane.map_or(UvMapping::ByNormal { span_m: size_m }, UvMapping::Plane)
-}
-
-/// Points of contact of a step.
-struct Points<'a> {
-    world: Option<ArrayView1<'a, i64>>,
-    pairs: ArrayView2<'a, i32>,
-    point: ArrayView2<'a, f64>,
-    normal: ArrayView2<'a, f64>,
-    force: ArrayView1<'a, f64>,
-    /// First rows in `force`; true where a normal force is the sum of all.
-    efc: Option<(ArrayView1<'a, i32>, bool)>,
-    restitution: f32,
-}
-
-impl Points<'_> {
-    fn check(&self, worlds: usize, things: usize) -> Result<(), String> {
-        let rows = self.pairs.nrows();
-        let shape = |name: &str, shape: &[usize], right: &[usize]| match shape == right {
-            true => Ok(()),
-            false => Err(format!("{name}: has the shape {shape:?}; must be {right:?}")),
-        };
-        shape("pairs", self.pairs.shape(), &[rows, 2])?;
-        shape("point", self.point.shape(), &[rows, 3])?;
-        shape("normal", self.normal.shape(), &[rows, 3])?;
-        shape("force", &[self.efc.map_or(self.force.len(), |(address, _)| address.len())], &[rows])?;
-        if let Some(world) = self.world {
-            shape("world", world.shape(), &[rows])?;
-            let known = |world: &i64| usize::try_from(*world).is_ok_and(|world| world < worlds);
-            if let Some(row) = world.iter().position(|world| !known(world)) {
-                return Err(format!("world: row {row} is {}; must be 0 to {}", world[row], worlds - 1));
-            }
-        }
-        let known = |thing: &i32| usize::try_from(*thing).is_ok_and(|thing| thing < things);
-        if let Some(row) = self.pairs.rows().into_iter().position(|pair| !pair.iter().all(known)) {
-            return Err(format!("pairs: row {row} is {}; must be 0 to {}", self.pairs.row(row), things - 1));
-        }
-        finite("point", self.point.iter())?;
-        finite("normal", self.normal.iter())?;
-        finite("force", self.force.iter())
-    }
-
-    /// Deals them to their worlds.
-    fn deal(&self, worlds: &mut [Heard]) {
-        let space = |row: ArrayView1<'_, f64>| Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32);
-        for row in 0..self.pairs.nrows() {
-            let world = self.world.map_or(0, |world| world[row] as usize);
-            let colliders = [0, 1].map(|k| self.pairs[[row, k]] as u32);
-            let contact = Contact {
-                colliders,
-                point_m: space(self.point.row(row)),
-                normal: space(self.normal.row(row)),
-                force_n: self.force_n(row) as f32,
-                restitution: self.restitution,
-            };
-            worlds[world].contacts.push(contact);
-        }
-    }
-
-    fn force_n(&self, row: usize) -> f64 {
-        let Some((address, sums)) = self.efc else { return self.force[row] };
-        // What MuJoCo leaves out of its solver has no row.
-        let begins = |row: &i32| usize::try_from(*row).ok();
-        let Some(from) = begins(&address[row]) else { return 0.0 };
-        // Contacts come last among the rows, one behind the other.
-        let next = address.iter().skip(row + 1).find_map(begins).filter(|_| sums);
-        let until = next.unwrap_or(if sums { self.force.len() } else { from + 1 });
-        self.force.iter().take(until).skip(from).sum()
-    }
-}
-
-fn finite<'a>(name: &str, mut values: impl Iterator<Item = &'a f64>) -> Result<(), String> {
-    match values.position(|value| !value.is_finite()) {
-        Some(index) => Err(format!("{name}: number {index} is not finite; must be a number")),
-        None => Ok(()),
-    }
-}
-
-impl Step<'_> {
-    fn check(&self, worlds: &[Heard], things: &[Option<Told>]) -> Result<(), String> {
-        let count = worlds.len();
-        let rows = |row: fn(&Told) -> usize| things.iter().flatten().map(row).max().map_or(0, |row| row + 1);
-        for (name, array, least, columns) in [
-            ("place", &self.place, things.len(), 3),
-            ("rotation", &self.turn, things.len(), 9),
-            ("velocity", &self.velocity, rows(|told| told.6), 6),
-            ("about", &self.about, rows(|told| told.7), 3),
-        ] {
-            let shape = array.shape();
-            if shape[0] != count || shape[1] < least || shape[2] != columns {
-                return Err(format!(
-                    "{name}: has the shape {shape:?}; must be [{count}, {least}, {columns}]"
-                ));
-            }
-            finite(name, array.iter())?;
-        }
-        finite("t", self.time_s.iter())?;
-        for (index, (heard, t)) in worlds.iter().zip(self.time_s).enumerate() {
-            if let Some([_, last]) = heard.time_s.filter(|[_, last]| t <= last) {
-                return Err(format!("t: world {index} is at {t} s after {last} s; must grow, or be reset"));
-            }
-        }
-        Ok(())
-    }
-
-    /// Place and motion of a thing in a world.
-    fn placed(&self, world: usize, thing: usize, (row, about): (usize, usize)) -> Placed {
-        let space = |array: &ArrayView3<'_, f64>, row: usize, from: usize| {
-            Vec3::from_array([0, 1, 2].map(|k| array[[world, row, from + k]] as f32))
-        };
-        let place_m = space(&self.place, thing, 0);
-        let turn = Mat3::from_cols_array(&std::array::from_fn(|k| self.turn[[world, thing, k]] as f32));
-        let about = Motion {
-            angular_rad_s: space(&self.velocity, row, 0),
-            linear_m_s: space(&self.velocity, row, 3),
-            centre_m: space(&self.about, about, 0),
-        };
-        let motion = Motion { linear_m_s: about.at(place_m), centre_m: place_m, ..about };
-        // Rows of numpy are columns of the matrix.
-        Placed { place_m, turn: turn.transpose(), motion }
-    }
 }
 
 impl Heard {

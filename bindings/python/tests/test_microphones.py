@@ -127,11 +127,16 @@ def test_events_come_out_as_a_contact_log_that_renders():
         arrays = circles(step, [0])
         del arrays["world"]
         mics.step(**arrays)
+    nothing = {"pairs": np.zeros((0, 2), int), "point": np.zeros((0, 3)), "normal": np.zeros((0, 3)), "force": []}
+    mics.step(**(arrays | {"t": 100 * STEP_S} | nothing))
     rows = mics.events()
-    assert list(rows["event"][:2]) == ["begin", "begin"] and set(rows["event"]) == {"begin", "move"}
-    assert rows["normal_force_n"].max() == pytest.approx(0.9) and rows["t"][-1] == pytest.approx(99 * STEP_S)
-    speed = np.linalg.norm(rows["velocity_m_s"], axis=1)
+    assert list(rows["event"][:2]) == ["begin", "begin"] and set(rows["event"]) == {"begin", "move", "end"}
+    assert np.nanmax(rows["normal_force_n"]) == pytest.approx(0.9) and rows["t"][-1] == pytest.approx(100 * STEP_S)
+    speed = np.linalg.norm(rows["velocity_m_s"][:-2], axis=1)
     assert np.allclose(np.sort(np.unique(np.round(speed, 3))), [0.15, 0.16])
+    take = asp.render(mics.scene, rows, seed=1, sr=16_000)
+    read = mics.read(0.1)[0, 0]
+    assert np.array_equal(take.pickup[0, 3200 - len(read) : 3200], read) and np.ptp(read) > 1.0
 
 
 @pytest.mark.parametrize(

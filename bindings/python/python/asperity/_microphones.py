@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from asperity import _native, contacts as _contacts
 from asperity._scene import SceneFile, _known, sources
 
 _F32 = npt.NDArray[np.float32]
+_PROBES = "a thing of the simulator"
 _FORMS = ("flat", "sphere", "capsule", "cylinder")
 
 
@@ -94,6 +95,13 @@ class Microphones:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (type(self), *self._made_of)
+
+    @property
+    def scene(self) -> SceneFile:
+        """The scene with the probes that its logs name: `asp.render(mics.scene, mics.events(k), seed=…, sr=…)` reads what world k has."""
+        faces = [{"name": f"{_PROBES}, face of {face} m", "face_m": face, "asperities": 64} for face in (0.05, 0.25)]
+        probes = [{"name": _PROBES, "tip_mass_kg": 0.0}, *faces]
+        return replace(self._made_of[0][0], probe=[{"preset": "rigid", **probe} for probe in probes])
 
     @property
     def channels(self) -> int:

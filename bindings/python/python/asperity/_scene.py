@@ -267,15 +267,15 @@ class Sand(_Surface):
 class SceneFile:
     """A scene made in Python: the text of a scene file, and the arrays that it names.
 
-    surfaces: one or several. bodies: those that no surface lies on. probe: a preset of `names_of("probe")` or a table of fields.
-    actuators: tables of [[actuator]], in channel order. audio: a table of [audio], or a list of buses. tail_s: ring-out, s.
+    surfaces: one or several. bodies: those that no surface lies on. probe: a preset of `names_of("probe")` or a table of fields, or
+    several, each with a name. actuators: tables of [[actuator]], in channel order. audio: a table of [audio], or a list of buses. tail_s: ring-out, s.
     pickups: tables of [[pickup]], in channel order (`Take.pickup`).
     Names are checked where they stand, everything else when it is rendered or opened, in the engine's words.
     """
 
     surfaces: _Surface | Sequence[_Surface]
     bodies: Sequence[Body] = ()
-    probe: str | Mapping[str, Any] | None = None
+    probe: str | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None
     actuators: Sequence[Mapping[str, Any]] | None = None
     audio: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None
     tail_s: float | None = None
@@ -301,7 +301,8 @@ class SceneFile:
             "surface": [surface.table() for surface in surfaces],
         }
         if self.probe is not None:
-            tables["probe"] = {"preset": self.probe} if isinstance(self.probe, str) else dict(self.probe)
+            one = {"preset": self.probe} if isinstance(self.probe, str) else self.probe
+            tables["probe"] = dict(one) if isinstance(one, Mapping) else [dict(probe) for probe in one]
         if self.actuators is not None:
             tables["actuator"] = [dict(actuator) for actuator in self.actuators]
         if self.audio is not None:
