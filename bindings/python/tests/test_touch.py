@@ -405,6 +405,8 @@ def test_a_bell_in_slow_motion_rings_lower_and_a_strike_with_a_name_once(tmp_pat
 
     def rings(scale: float) -> tuple[float, dict]:
         scene = asp.Scene(tmp_path / "scene.toml", sr=48_000, clock="exact")
+        # Before what is reported for later: a scale holds from the last report on.
+        scene.set_time_scale(scale, bend_pitch=True)
         strike = dict(body="bell", speed_m_s=1.0, mass_kg=0.004, radius_m=0.005)
         for _ in range(3):
             scene.impact_named(0.0, 7, **strike)
