@@ -278,8 +278,8 @@ fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_aud
     assert_eq!(pcm.lost(), (left.len() - count) as u64);
 }
 
-/// A runtime that keeps to `XR_EXT_haptic_parametric`: a stream it plays, its beginning, the time of
-/// its last point.
+/// A runtime that keeps to `XR_EXT_haptic_parametric`: a stream it plays, its beginning, the time
+/// of its last point.
 #[derive(Default)]
 struct Runtime {
     stream: Option<(f64, i64)>,

@@ -103,7 +103,7 @@ else
     skip "no openxr/openxr.h (libopenxr-dev)"
 fi
 loader=libopenxr_loader.so.1 layer=XR_APILAYER_LUNARG_core_validation
-if [ -x "$work/headset" ] && ldconfig -p | grep -q "$loader"; then
+if [ -x "$work/headset" ] && ldconfig -p | grep -F "$loader" >/dev/null; then
     # shellcheck disable=SC2086
     gcc -std=c99 -pedantic $strict -shared -fPIC tests/openxr_runtime.c -o "$work/openxr_runtime.so"
     printf '{"file_format_version": "1.0.0", "runtime": {"library_path": "%s"}}\n' "$work/openxr_runtime.so" >"$work/runtime.json"

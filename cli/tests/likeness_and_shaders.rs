@@ -194,7 +194,8 @@ fn a_table_of_the_sources_is_computed_again_and_put_beside_what_is_printed() {
     );
 }
 
-/// A square of 20 mm as glTF, which its node doubles and lifts by 5 mm; texture coordinates times `repeats`.
+/// A square of 20 mm as glTF, which its node doubles and lifts by 5 mm; texture coordinates times
+/// `repeats`.
 fn square(repeats: f32, with_coordinates: bool) -> (Value, Vec<u8>) {
     let points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.02, 0.0], [0.0, 0.02, 0.0_f32]];
     let uv = [[0.0, 0.0], [repeats, 0.0], [repeats, repeats], [0.0, repeats]];
@@ -244,7 +245,7 @@ fn a_solid_is_baked_over_a_mesh_where_its_texels_lie() {
     let grey_m = told["metres_per_grey"].as_f64().unwrap();
     let map = image::open(folder.join("granite.png")).unwrap().into_luma16();
     let parameters = SolidMaterial::Granite.parameters();
-    let noise = SolidNoise::new(parameters.clone(), 1).unwrap();
+    let noise = SolidNoise::new(parameters, 1).unwrap();
     let height_m = |x: u32, y: u32| {
         let [x, y] = [x, y].map(|texel| (f64::from(texel) + 0.5) * texel_m);
         parameters.amplitude_m * noise.definition(&parameters, [x, y, 0.005])

@@ -376,7 +376,8 @@ fn a_force_spread_sample_by_sample_is_what_the_ring_would_have_given() {
     }
 }
 
-/// Force of m x'' = −x^1.5 (1 + a x') from x' = 1, its step, and the speed at which the bodies part.
+/// Force of m x'' = −x^1.5 (1 + a x') from x' = 1, its step, and the speed at which the bodies
+/// part.
 fn damped(restitution: f64) -> (Vec<f64>, f64, f64) {
     // a (1 + e) = ln((1 + a) / (1 − a e)), by halving.
     let (mut low, mut high) = (1e-9, (1.0 - 1e-12) / restitution);
@@ -452,4 +453,7 @@ fn a_lossy_pulse_keeps_its_impulse_and_an_elastic_one_its_bits() {
     }
     let whole = HertzPulse::elastic(0.3, 2e-4);
     assert_eq!(whole.elastic_parts().collect::<Vec<_>>(), [whole]);
+    let stuck = HertzPulse { restitution: 0.0, ..whole };
+    assert_eq!(stuck.elastic_parts().collect::<Vec<_>>(), [whole]);
+    assert_eq!(stuck.length_s(), whole.length_s());
 }

@@ -124,7 +124,8 @@ fn write_baked(options: &Options, heights: &Heights, mesh: &Path, path: &Path) -
     let baked = bake(mesh, options.size as usize, height)?;
     let mut preview = write_heights(path, &baked.heights_m, baked.metres_per_px)?;
     preview.warnings = baked.warnings;
-    say_preview(&preview, options.json, baked.metres_per_px * f64::from(options.size))
+    let width_m = baked.metres_per_px * f64::from(options.size);
+    say_preview(&preview, options.json, 1e-6 * (1e6 * width_m).round())
 }
 
 fn heights(options: &Options) -> Result<Heights, CliError> {

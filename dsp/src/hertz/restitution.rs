@@ -9,8 +9,10 @@
 //! of its length and holds 4 dB more at 1.3/τ, 15 dB more at 2/τ, where the elastic one is 12 and
 //! 31 dB down. Three elastic pulses lie on its spectrum within 1.4 dB a third octave up to 3/τ and
 //! within 2.6 dB to 5/τ, and on its peak within 9 %, for e from 0.05 to 1 (below, 0.05 is taken);
-//! wᵢ and rᵢ are polynomials of 1 − e by least squares (`dsp/tests/independent/hertz_restitution.py`).
-//! τ is the contact time of the elastic impact.
+//! wᵢ and rᵢ are polynomials of 1 − e by least squares
+//! (`dsp/tests/independent/hertz_restitution.py`). τ is the contact time of the elastic impact.
+//! Bodies that stick (e = 0) never part, and the law has no pulse for them; physics engines write 0
+//! where nothing was set. The elastic shape is kept there, over half of its impulse.
 
 use super::{HertzPulse, pulse_shape};
 
@@ -33,7 +35,7 @@ impl HertzPulse {
 
     /// Elastic pulses with the same onset that it is the sum of; an elastic one is itself.
     pub fn elastic_parts(&self) -> impl Iterator<Item = Self> + use<> {
-        let lost = 1.0 - self.restitution.clamp(LEAST, 1.0);
+        let lost = if self.restitution > 0.0 { 1.0 - self.restitution.clamp(LEAST, 1.0) } else { 0.0 };
         let cubic = move |[a, b, c]: [f64; 3]| lost * (a + lost * (b + lost * c));
         let [first, second] = SHARES.map(cubic);
         let shares = [1.0 - first - second, first, second];
@@ -49,7 +51,11 @@ impl HertzPulse {
     /// Time from the onset after which nothing is left of it, s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
-        if self.restitution < 1.0 { LONGEST * self.contact_time_s } else { self.contact_time_s }
+        if self.restitution > 0.0 && self.restitution < 1.0 {
+            LONGEST * self.contact_time_s
+        } else {
+            self.contact_time_s
+        }
     }
 
     /// Force so long after the onset, N.

@@ -94,7 +94,7 @@ fn both_observers_say_what_they_say_of_the_seven_materials() {
     told(&judge(&known, &asked, &CONDITIONS[..1]), &names);
 }
 
-/// Four pieces each of twelve materials, heights 0 to 1: solids, Brownian surfaces, reliefs.
+/// Four pieces each of materials, heights 0 to 1: solids, Brownian surfaces, reliefs.
 fn pieces() -> Vec<Vec<Raster>> {
     const SIDE: usize = 256;
     let whole = |map: Raster| {
@@ -136,7 +136,7 @@ fn other_pieces_of_a_material_rank_before_other_materials() {
         .flat_map(|(material, maps)| maps.iter().map(move |map| (material, impression(map))))
         .collect();
     let mut first = Vec::new();
-    for (place, (material, original)) in all.iter().enumerate().take(40) {
+    for (place, (material, original)) in all.iter().enumerate() {
         let mut ranked: Vec<(f64, bool)> = all
             .iter()
             .enumerate()
@@ -147,6 +147,6 @@ fn other_pieces_of_a_material_rank_before_other_materials() {
         first.push(ranked[..3].iter().filter(|(_, own)| *own).count());
     }
     let share = first.iter().filter(|own| **own == 3).count() as f64 / first.len() as f64;
-    println!("own pieces among the first three, query by query: {first:?}; all three in {share:.2}");
-    assert!(share >= 0.8, "{share}");
+    println!("own pieces among the first three, query by query: {first:?}; all three in {share:.3}");
+    assert!(share >= 0.9, "{share}");
 }

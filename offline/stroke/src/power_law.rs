@@ -213,8 +213,8 @@ mod tests {
                     .collect();
                 let law = PowerLaw::through(&bands, tip_radius_m);
                 // What a tip leaves of the octaves hides their slope, and the engine's weights are
-                // polynomials of R within half a decibel: the exponent is off by up to 0.3 under the
-                // widest tip, and its standard error has to tell that.
+                // polynomials of R within half a decibel: the exponent is off by up to 0.3 under
+                // the widest tip, and its standard error has to tell that.
                 let bound = if tip_radius_m > 0.0 { (2.0 * law.alpha_se).min(0.3) } else { 0.1 };
                 assert!(
                     (law.alpha - alpha).abs() < bound,

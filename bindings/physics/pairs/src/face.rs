@@ -69,7 +69,7 @@ impl Probes {
         [(name.to_owned(), THING_PROBE), face(FACES_M[0]), face(FACES_M[1])]
     }
 
-    /// Those of a scene that has them already, in the order of [`tables`](Self::tables).
+    /// Probes of a scene that has them already, in the order of [`tables`](Self::tables).
     #[must_use]
     pub fn known([tip, short, long]: [ProbeId; 1 + FACES_M.len()]) -> Self {
         Self { tip, faces: [short, long] }

@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "LiveFrames",
+    "LiveLevels",
     "LiveRenderer",
     "LiveScene",
     "Microphones",
