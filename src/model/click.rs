@@ -50,25 +50,14 @@ impl Click {
         sample_rate_hz: f64,
     ) {
         for part in pulse.elastic_parts() {
-            self.deposit_elastic(&part, ring, sample, offset, sample_rate_hz);
-        }
-    }
-
-    fn deposit_elastic(
-        &self,
-        pulse: &HertzPulse,
-        ring: &mut [f32],
-        sample: u64,
-        offset: f64,
-        sample_rate_hz: f64,
-    ) {
-        let peak = self.peak(pulse);
-        let (mask, length) = (ring.len() - 1, pulse.contact_time_s * sample_rate_hz);
-        // The mean over a sample, so that nothing is left when it is over, however short it is.
-        let risen = |t: f64| length / PI * (PI * (t / length).clamp(0.0, 1.0)).sin();
-        for i in 0..Self::samples(pulse, sample_rate_hz).min(ring.len() as u64) {
-            let t = i as f64 - offset;
-            ring[sample.wrapping_add(i) as usize & mask] += (peak * (risen(t + 1.0) - risen(t))) as f32;
+            let peak = self.peak(&part);
+            let (mask, length) = (ring.len() - 1, part.contact_time_s * sample_rate_hz);
+            // The mean over a sample, so that nothing is left when it is over, however short it is.
+            let risen = |t: f64| length / PI * (PI * (t / length).clamp(0.0, 1.0)).sin();
+            for i in 0..Self::samples(&part, sample_rate_hz).min(ring.len() as u64) {
+                let t = i as f64 - offset;
+                ring[sample.wrapping_add(i) as usize & mask] += (peak * (risen(t + 1.0) - risen(t))) as f32;
+            }
         }
     }
 

@@ -21,7 +21,7 @@ fn hand(app: &mut App) -> [Entity; 2] {
     [app.world_mut().spawn((TouchProbe::felt_by(0), TouchTip::over([plate]))).id(), plate]
 }
 
-/// So many frames of a hand that comes down to 5 mm below the top at 0.25 m/s and goes on along it
+/// Frames of a hand that comes down to 5 mm below the top at 0.25 m/s and goes on along it
 /// at 0.1 m/s.
 fn follow(app: &mut App, finger: Entity, frames: std::ops::Range<u32>) {
     for frame in frames {

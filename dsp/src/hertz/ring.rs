@@ -23,25 +23,16 @@ impl HertzPulse {
     /// ring's length − 6 samples is shortened to it (the impulse is kept). A pulse that holds no
     /// finite number is ignored.
     pub fn deposit(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
-        for part in self.elastic_parts() {
-            part.deposit_elastic(ring, onset_sample, onset_offset, sample_rate_hz);
-        }
-    }
-
-    fn deposit_elastic(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
-        let Some(length) = self.samples_in(ring.len(), sample_rate_hz).filter(|_| onset_offset.is_finite())
-        else {
-            return;
-        };
-        let impulse = self.impulse_n_s;
-        let offset = onset_offset.clamp(0.0, 1.0);
-        let mut write = Writer { ring, at: onset_sample.wrapping_add(1) };
-        // Distance from the onset to the first sample that receives something.
-        let first = 1.0 - offset;
-        if length < 4.0 {
-            short(&mut write, impulse, length, first)
-        } else {
-            long(&mut write, impulse, length, first)
+        for part in self.elastic_parts().filter(|_| onset_offset.is_finite()) {
+            let Some(length) = part.samples_in(ring.len(), sample_rate_hz) else { continue };
+            let mut write = Writer { ring: &mut *ring, at: onset_sample.wrapping_add(1) };
+            // Distance from the onset to the first sample that receives something.
+            let first = 1.0 - onset_offset.clamp(0.0, 1.0);
+            if length < 4.0 {
+                short(&mut write, part.impulse_n_s, length, first)
+            } else {
+                long(&mut write, part.impulse_n_s, length, first)
+            }
         }
     }
 }

@@ -159,37 +159,26 @@ impl OnsetCorrection {
         sample_rate_hz: f64,
     ) {
         for part in pulse.elastic_parts() {
-            self.deposit_elastic(&part, ring, onset_sample, onset_offset, sample_rate_hz);
-        }
-    }
-
-    fn deposit_elastic(
-        &self,
-        pulse: &HertzPulse,
-        ring: &mut [f32],
-        onset_sample: u64,
-        onset_offset: f64,
-        sample_rate_hz: f64,
-    ) {
-        let Some(length) = pulse.samples_in(ring.len(), sample_rate_hz) else { return };
-        let peak = pulse.impulse_n_s / length;
-        let mask = ring.len() - 1;
-        let inside = (length >= LONG).then(|| self.inside(length));
-        let mut at = onset_sample.wrapping_add(1);
-        let mut v = 1.0 - onset_offset.clamp(0.0, 1.0);
-        while v < length + REACH as f64 {
-            let missing = match &inside {
-                Some(polynomial) if v >= REACH as f64 && v <= length => {
-                    let x = 2.0 * (v - KERNEL_LATENCY as f64) / length - 1.0;
-                    polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c)
+            let Some(length) = part.samples_in(ring.len(), sample_rate_hz) else { continue };
+            let peak = part.impulse_n_s / length;
+            let mask = ring.len() - 1;
+            let inside = (length >= LONG).then(|| self.inside(length));
+            let mut at = onset_sample.wrapping_add(1);
+            let mut v = 1.0 - onset_offset.clamp(0.0, 1.0);
+            while v < length + REACH as f64 {
+                let missing = match &inside {
+                    Some(polynomial) if v >= REACH as f64 && v <= length => {
+                        let x = 2.0 * (v - KERNEL_LATENCY as f64) / length - 1.0;
+                        polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c)
+                    }
+                    _ => self.near_an_edge(v, length),
+                };
+                if let Some(y) = ring.get_mut(at as usize & mask) {
+                    *y += (peak * missing) as f32;
                 }
-                _ => self.near_an_edge(v, length),
-            };
-            if let Some(y) = ring.get_mut(at as usize & mask) {
-                *y += (peak * missing) as f32;
+                at = at.wrapping_add(1);
+                v += 1.0;
             }
-            at = at.wrapping_add(1);
-            v += 1.0;
         }
     }
 

@@ -84,7 +84,7 @@ struct Seen<'a> {
 
 impl World {
     /// Takes a step of `step_s` in which these pressed; `placed` has an entry for each collider.
-    /// What is none, and pairs in which nothing rings, are not heard.
+    /// Places without a collider, and pairs in which nothing rings, are not heard.
     pub fn step(
         &mut self,
         (colliders, placed): (&[Option<Collider>], &[Placed]),
