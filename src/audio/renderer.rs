@@ -12,9 +12,11 @@ mod messages;
 mod meter;
 mod outputs;
 mod pickups;
+mod render;
 mod render_pool;
 mod tails;
 pub(crate) mod tape;
+mod tidy;
 mod voices;
 
 use crate::audio::blows::Blows;
@@ -25,14 +27,12 @@ use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Scratch, Voice, VoiceState};
+use crate::audio::voice::{Scratch, Voice};
 use crate::link::message::{Message, Retired};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
-use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
-use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::probe::{PreparedProbe, row_latency};
@@ -44,12 +44,10 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_surface::height_field::MAX_BLOCK;
 use clips::Clips;
 use contacts::SilentContact;
-use outputs::{Bus, HapticChannel, Mix, clear_beyond};
+use outputs::{Bus, HapticChannel, Mix};
 use pickups::PickupChannel;
 use render_pool::RenderPool;
-use std::any::Any;
 use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
 use tails::TAILS;
 use tape::Tape;
 
@@ -277,165 +275,12 @@ impl Renderer {
     fn contact_limit(&self) -> usize {
         self.governor.contacts(self.max_contacts)
     }
-
-    /// Renders the next samples: one slice a channel, all equally long (if they are not, the
-    /// shortest counts and the rest is silent). Haptic channel i goes into haptic slice i, audio
-    /// bus i into audio slice i, both in the order of the config.
-    ///
-    /// ```
-    /// use asperity::{ActuatorSettings, AudioBus, Config, Engine};
-    ///
-    /// let config = Config {
-    ///     actuators: vec![ActuatorSettings::default(); 3],
-    ///     audio: vec![AudioBus::default(); 2],
-    ///     ..Config::default()
-    /// };
-    /// let Engine { mut renderer, .. } = config.build()?;
-    /// let (mut haptic, mut audio) = ([[0.0f32; 128]; 3], [[0.0f32; 128]; 2]);
-    /// renderer.render(&mut haptic.each_mut().map(|c| &mut c[..]), &mut audio.each_mut().map(|c| &mut c[..]));
-    /// # Ok::<(), asperity::ConfigError>(())
-    /// ```
-    pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
-        self.render_tapped(haptic, audio, &mut NoTap);
-    }
-
-    /// [`render`](Self::render), and what the [pickups](crate::Pickup) read: channel i of
-    /// [`Config::pickups`](field@crate::Config::pickups) into slice i. They lag as the audio does
-    /// ([`audio_latency_samples`](Self::audio_latency_samples)).
-    pub fn render_with_pickups(
-        &mut self,
-        haptic: &mut [&mut [f32]],
-        audio: &mut [&mut [f32]],
-        pickups: &mut [&mut [f32]],
-    ) {
-        self.render_all(haptic, audio, pickups, &mut NoTap);
-    }
-
-    /// [`render`](Self::render), with a view into every contact.
-    pub fn render_tapped<T: Tap>(
-        &mut self,
-        haptic: &mut [&mut [f32]],
-        audio: &mut [&mut [f32]],
-        tap: &mut T,
-    ) {
-        self.render_all(haptic, audio, &mut [], tap);
-    }
-
-    pub(crate) fn render_all<T: Tap>(
-        &mut self,
-        haptic: &mut [&mut [f32]],
-        audio: &mut [&mut [f32]],
-        pickups: &mut [&mut [f32]],
-        tap: &mut T,
-    ) {
-        let frames = shortest(haptic).min(shortest(audio)).min(shortest(pickups));
-        let frames = if frames == usize::MAX { 0 } else { frames };
-        self.clear_what_nobody_writes(frames, haptic, audio);
-        clear_beyond(pickups, |index| if index < self.pickups.len() { frames } else { 0 });
-        let split = [self.channels.len(), self.channels.len() + self.buses.len()];
-        let mut done = 0;
-        while done < frames {
-            let wanted = if self.tape.runs() { self.tape.missing() } else { frames - done };
-            if wanted > 0 {
-                let ran = self.tape.runs();
-                let n = self.render_on(done, wanted.min(frames - done), haptic, audio, pickups, tap);
-                self.tape.write((done, n), haptic, audio, pickups, split, ran);
-                done += if ran { 0 } else { n };
-            } else {
-                self.tape.read(done, haptic, audio, pickups, split);
-                done += 1;
-            }
-        }
-        self.given += frames as u64;
-        self.counters.position.store(self.position, Relaxed);
-    }
-
-    /// Renders `frames` samples in the game's time, into the outputs from `at` on; as many as were
-    /// rendered, fewer where the tape begins to run.
-    fn render_on<T: Tap>(
-        &mut self,
-        at: usize,
-        frames: usize,
-        haptic: &mut [&mut [f32]],
-        audio: &mut [&mut [f32]],
-        pickups: &mut [&mut [f32]],
-        tap: &mut T,
-    ) -> usize {
-        let every = self.shared.inner.every;
-        let (mut done, end, ran) = (at * every, (at + frames) * every, self.tape.runs());
-        while done < end {
-            self.apply_due();
-            if self.tape.runs() && !ran && done.is_multiple_of(every) {
-                break;
-            }
-            let n = self.stretch(end - done);
-            self.render_contacts(n, tap);
-            if self.outlets.are_open() {
-                let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
-                self.outlets.shown(shown / self.shared.inner.every as u64);
-            }
-            self.render_master(n);
-            self.render_haptics(done, n, haptic);
-            self.render_bodies(done, n, audio);
-            self.render_pickups(done, n, pickups);
-            done += n;
-            self.position += n as u64;
-            if self.position.is_multiple_of(MAX_BLOCK as u64) {
-                self.tidy();
-            }
-        }
-        done / every - at
-    }
-
-    /// Results of the surfaces' sources, at the end of a render.
-    pub(crate) fn finish(&mut self) -> Vec<(SurfaceId, Box<dyn Any>)> {
-        let position = self.position;
-        let named = self.seats.iter_mut().filter_map(|seat| Some((seat.id()?, seat)));
-        named
-            .flat_map(|(id, seat)| seat.finish(position).into_iter().map(move |result| (id, result)))
-            .collect()
-    }
-
-    /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
-    fn tidy(&mut self) {
-        self.show_levels();
-        self.outlets.tidy(&mut self.to_game);
-        self.clips.tidy(self.position, &mut self.to_game);
-        self.voices_used.retain(|voice| self.voices[voice].phase != VoiceState::Free);
-        for at in 0..self.voices_used.len() {
-            let index = self.voices_used.at(at);
-            let voice = &self.voices[index];
-            let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
-            if voice.phase == VoiceState::Sounding && lapsed {
-                Counters::add(&self.counters.lapsed, 1);
-                self.silence(index, false);
-            }
-        }
-        self.seats_used.retain(|index| {
-            let sounds = |voice: usize| self.voices[voice].phase != VoiceState::Free;
-            let in_use = || self.voices_used.iter().any(|v| self.voices[v].surface == index && sounds(v));
-            self.seats[index].tidy(self.position, in_use, &mut self.to_game);
-            !self.seats[index].is_empty()
-        });
-        self.bodies_used.retain(|index| {
-            self.bodies[index].tidy(self.position, &mut self.to_game);
-            !self.bodies[index].is_empty()
-        });
-        let sounding = self.sounding_count() as u64;
-        Counters::add(&self.counters.shed, self.groups_shed as u64);
-        self.counters.contacts.store(sounding, Relaxed);
-    }
 }
 
 /// A rise from 0 to 1 in `steps` steps, without step or corner.
 fn raised_cosine(steps: usize) -> Box<[f64]> {
     let at = |step: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * step as f64 / steps as f64);
     (0..=steps).map(at).collect()
-}
-
-/// Length of the shortest channel; `usize::MAX` when there is none.
-fn shortest(channels: &[&mut [f32]]) -> usize {
-    channels.iter().map(|channel| channel.len()).min().unwrap_or(usize::MAX)
 }
 
 crate::opaque::debug_by_name!(Renderer);

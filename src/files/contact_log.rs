@@ -8,6 +8,7 @@ mod edit;
 mod error;
 mod keys;
 mod names;
+mod object;
 
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;

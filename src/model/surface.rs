@@ -1,5 +1,8 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
+#[cfg(feature = "image")]
+mod from_files;
+
 use crate::model::bad_value::{BadValue, within};
 use crate::model::excitation::{Excitation, Exciter};
 use crate::model::frame::SurfaceFrame;
@@ -13,17 +16,11 @@ use asperity_surface::height_field::{
     Extension, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, Touch, TouchKind,
 };
 use asperity_surface::height_map::{Extent, FRICTION, HeightMap, MapError};
-#[cfg(feature = "image")]
-use asperity_surface::image_io;
-#[cfg(feature = "image")]
-use asperity_surface::picture::Channel;
 use asperity_surface::picture::ImageError;
 use asperity_surface::tiled::Tiled;
 use asperity_surface::tip_law::TipLaw;
 use asperity_surface::wrap::Wrap;
 use std::any::Any;
-#[cfg(feature = "image")]
-use std::path::Path;
 
 /// Source of a surface's perceptual roughness R (0–1).
 #[derive(Debug, Clone)]
@@ -141,36 +138,6 @@ impl Surface {
             frame: None,
             described: None,
         })
-    }
-
-    /// A surface from a displacement map and a roughness map (grey PNG or JPEG, any size),
-    /// repeated.
-    ///
-    /// # Errors
-    /// When a map cannot be read or the extent is impossible; the message names the file.
-    #[cfg(feature = "image")]
-    pub fn from_maps(
-        displacement: impl AsRef<Path>,
-        roughness: impl AsRef<Path>,
-        extent: Extent,
-    ) -> Result<Self, SurfaceError> {
-        let heights = image_io::load_map(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
-        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
-        drop(heights); // One map at a time is as much memory as large ones need.
-        let map = map.with_roughness_map(&image_io::load_map(roughness, Channel::Luma)?.raster)?;
-        Ok(Self::new(map, extent.width_m, extent.height_m)?)
-    }
-
-    /// A surface from a displacement map alone, repeated; its roughness is the middle of the scale
-    /// unless told otherwise.
-    ///
-    /// # Errors
-    /// As [`from_maps`](Self::from_maps).
-    #[cfg(feature = "image")]
-    pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
-        let heights = image_io::load_map(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
-        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
-        Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 
     /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish

@@ -1,33 +1,24 @@
 //! `AsperityWorld`: the engine of a scene tree.
 
-use crate::events::{self, Rolling};
+mod members;
+mod opening;
+mod reports;
+
+use crate::events;
 use crate::haptic_stream::AsperityHapticStream;
-use crate::res_files::ResFiles;
 use crate::stream::{AsperityStream, MOST_CHANNELS};
 use crate::surface::AsperitySurface;
 use asperity::files::contact_log::Names;
-use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort, PointSettings, Points, PointsPort, Tone};
-use asperity::load::Overrides;
 use asperity::surface::sand::{SandThread, SandWorker};
-use asperity::{
-    ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, LevelPolicy, Scene, SurfaceId,
-    TipSurface,
-};
-use godot::classes::{AudioServer, AudioStreamPlayer, INode, ProjectSettings, SceneTree};
+use asperity::{Engine, Scene, SurfaceId, TipSurface};
+use godot::classes::{AudioStreamPlayer, INode, ProjectSettings, SceneTree};
 use godot::prelude::*;
-use std::path::Path;
-
-mod members;
 
 /// The group by which bodies and fingers find their world.
 const GROUP: &str = "asperity_world";
 /// The group by which a world that is built finds the bodies that are in the tree already.
 pub(crate) const BODIES: &str = "asperity_bodies";
-
-/// Lead of a stamp over the audio, s, at most: Godot catches up with up to 8 physics ticks in one
-/// frame, 133 ms at 60 Hz.
-const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
 
 /// Gravity beyond which a project's unit is taken for the centimetre, m/s².
 const ODD_GRAVITY_M_S2: f64 = 100.0;
@@ -242,105 +233,6 @@ impl AsperityWorld {
         running.and_then(|r| r.names.bodies.get(&name.to_string())).map_or(0, |id| id.to_bits() as i64)
     }
 
-    /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic
-    /// channel feels it (-1: none). Report once a physics tick; the time is the tick's. What rolls
-    /// tells with every report how fast it slips where it touches, m/s (0: it only rolls), and its
-    /// radius, m; left out, it is a stroke. How fast it moves along u and v, m/s, tells whoever
-    /// knows it: contact points of a physics engine hop, and without it each hop is a motion. What
-    /// touches is the engine's own probe (0) or that of `add_probe`.
-    /// False, and an error, where it is refused.
-    #[func]
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "a script calls it, and scripts have no structs to name things in"
-    )]
-    pub(crate) fn report_begin(
-        &mut self,
-        contact: i64,
-        surface: i64,
-        uv: Vector2,
-        force_n: f64,
-        channel: i64,
-        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
-        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
-        #[opt(default = events::NO_VELOCITY)] velocity_m_s: Vector2,
-        #[opt(default = 0)] probe: i64,
-    ) -> bool {
-        self.report("report_begin", || {
-            let touching = events::touching(surface, channel, probe)?;
-            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
-            let sample = events::sample(uv, force_n, events::velocity(velocity_m_s), rolling);
-            Ok(ContactEvent::begin_with(events::contact(contact)?, touching, sample))
-        })
-    }
-
-    /// A contact has moved; what rolls, and how fast, is told as in `report_begin`.
-    #[func]
-    pub(crate) fn report_move(
-        &mut self,
-        contact: i64,
-        uv: Vector2,
-        force_n: f64,
-        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
-        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
-        #[opt(default = events::NO_VELOCITY)] velocity_m_s: Vector2,
-    ) -> bool {
-        self.report("report_move", || {
-            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
-            let sample = events::sample(uv, force_n, events::velocity(velocity_m_s), rolling);
-            Ok(ContactEvent::moved(events::contact(contact)?, sample))
-        })
-    }
-
-    /// A contact has moved at a velocity that is known, m/s along u and v; what rolls tells it as
-    /// in `report_begin`.
-    #[func]
-    fn report_move_at(
-        &mut self,
-        contact: i64,
-        uv: Vector2,
-        force_n: f64,
-        velocity_m_s: Vector2,
-        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
-        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
-    ) -> bool {
-        self.report("report_move_at", || {
-            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
-            let sample = events::sample(uv, force_n, Some(velocity_m_s), rolling);
-            Ok(ContactEvent::moved(events::contact(contact)?, sample))
-        })
-    }
-
-    /// A contact ends.
-    #[func]
-    pub(crate) fn report_end(&mut self, contact: i64) -> bool {
-        self.report("report_end", || Ok(ContactEvent::end(events::contact(contact)?)))
-    }
-
-    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the
-    /// haptic channel that feels it (-1: none), and where in its own space, m, for a body whose
-    /// modes have shapes.
-    #[func]
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "a script calls it, and scripts have no structs to name things in"
-    )]
-    fn report_impact(
-        &mut self,
-        body: i64,
-        speed_m_s: f64,
-        mass_kg: f64,
-        radius_m: f64,
-        striker: GString,
-        channel: i64,
-        #[opt(default = events::NO_PLACE)] at_m: Vector3,
-    ) -> bool {
-        self.report("report_impact", || {
-            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel, at_m)
-                .map(ContactEvent::Impact)
-        })
-    }
-
     /// Statistics so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how
     /// much limiters have turned down at most; `why_silent` says what speaks against anything being
     /// heard, `why_clipped` what is too loud and what to turn.
@@ -382,47 +274,6 @@ impl AsperityWorld {
         worlds.iter_shared().find(|world| !world.is_queued_for_deletion())?.try_cast::<Self>().ok()
     }
 
-    /// Reads and builds; `live`: for the audio server, else for a render.
-    pub(crate) fn open(&self, live: bool) -> Result<Engine, String> {
-        let rate_hz = f64::from(AudioServer::singleton().get_mix_rate());
-        let clock = if live { CLOCK } else { ClockMode::Exact };
-        if self.scene_file.is_empty() {
-            let channels = usize::try_from(self.haptic_channels)
-                .ok()
-                .filter(|count| *count <= MOST_CHANNELS)
-                .ok_or_else(|| {
-                    format!("haptic_channels: {} is refused; must be 0 to 16", self.haptic_channels)
-                })?;
-            // Limited as before a sound card, what is felt too.
-            let felt = ActuatorSettings {
-                full_scale: self.haptic_full_scale_m,
-                limit_peaks: true,
-                ..ActuatorSettings::default()
-            };
-            let config = Config {
-                levels: self.level_policy()?,
-                sample_rate_hz: rate_hz,
-                clock,
-                actuators: vec![felt; channels],
-                audio: vec![AudioBus { gain: self.gain, limit: true, ..AudioBus::default() }],
-                ..Config::default()
-            };
-            return config.build().map_err(|error| error.to_string());
-        }
-        let files = ResFiles::default();
-        let path = self.scene_file.to_string();
-        let file = SceneFile::load_from(&files, Path::new(&path)).map_err(|error| error.to_string())?;
-        // Limited as before a sound card, whether it is played or rendered.
-        let overrides = Overrides {
-            files: &files,
-            sample_rate_hz: Some(rate_hz),
-            clock: Some(clock),
-            live: true,
-            ..Overrides::default()
-        };
-        Engine::from_scene(&file, &overrides).map_err(|error| error.to_string())
-    }
-
     /// Points of a haptic channel, 100 a second in the range of a headset's controller.
     pub(crate) fn points(&mut self, channel: i64) -> Option<PointsPort> {
         self.tried("AsperityHaptics", |running| {
@@ -438,15 +289,6 @@ impl AsperityWorld {
         let running =
             self.running.as_ref().ok_or("the world is not built; call build(), or see its error")?;
         running.scene.tip_surfaces(ids).map_err(|error| error.to_string())
-    }
-
-    fn level_policy(&self) -> Result<LevelPolicy, String> {
-        match self.levels.to_string().as_str() {
-            "shared" => Ok(LevelPolicy::Shared),
-            "each" => Ok(LevelPolicy::Each),
-            "as_given" => Ok(LevelPolicy::AsGiven),
-            other => Err(format!("levels: \"{other}\" is refused; must be shared, each or as_given")),
-        }
     }
 
     /// Number of builds.
@@ -476,18 +318,6 @@ impl AsperityWorld {
         self.base_mut().add_child(&player);
         player.play();
         self.players.push(player);
-    }
-
-    pub(crate) fn report(
-        &mut self,
-        what: &str,
-        event: impl FnOnce() -> Result<ContactEvent, String>,
-    ) -> bool {
-        let time_s = self.time_s;
-        self.tried(what, |running| {
-            running.scene.report(time_s, event()?).map_err(|refused| refused.reason.to_string())
-        })
-        .is_some()
     }
 
     /// Does something with the engine; says so where there is none.

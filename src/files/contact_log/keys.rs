@@ -1,12 +1,11 @@
 //! Keys of a line of the contact log: which each event needs and takes, and what they hold.
 //! docs/formats/log.md has a table for each.
 
+use super::object::Object;
 use super::{LogError, VERSION};
 use crate::files::nearest::nearest;
 use crate::model::material::Material;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde_json::{Map, Value};
-use std::fmt;
 
 /// Keys of any line.
 const OF_ANY: [&str; 3] = ["t", "event", "version"];
@@ -345,34 +344,6 @@ fn no_number(line: &str) -> Option<(String, &'static str)> {
     let (before, _) = line[..place].rsplit_once(':')?;
     let key = before.trim_end().trim_end_matches('"').rsplit('"').next()?;
     Some((key.to_owned(), word))
-}
-
-/// A JSON object whose keys are each written once.
-struct Object(Map<String, Value>);
-
-impl<'de> Deserialize<'de> for Object {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Keys;
-        impl<'de> Visitor<'de> for Keys {
-            type Value = Object;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("one JSON object")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut from: A) -> Result<Object, A::Error> {
-                let mut keys = Map::new();
-                while let Some((key, value)) = from.next_entry::<String, Value>()? {
-                    if keys.contains_key(&key) {
-                        return Err(A::Error::custom(format!("{key}: is written twice")));
-                    }
-                    keys.insert(key, value);
-                }
-                Ok(Object(keys))
-            }
-        }
-        deserializer.deserialize_map(Keys)
-    }
 }
 
 #[cfg(test)]
