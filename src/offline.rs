@@ -110,13 +110,13 @@ pub fn render(
 ///
 /// # Errors
 /// As [`render`], and [`LogError::Stopped`] when the tap [does not go on](Tap::goes_on).
-pub fn render_tapped<T: Tap>(
+pub fn render_tapped(
     scene: Scene,
     renderer: Renderer,
     log: &ContactLog,
     names: &Names,
     options: &Options,
-    tap: &mut T,
+    tap: &mut dyn Tap,
 ) -> Result<Render, LogError> {
     render_edited(scene, renderer, log, names, options, &mut Edits::default(), tap)
 }
@@ -126,14 +126,14 @@ pub fn render_tapped<T: Tap>(
 ///
 /// # Errors
 /// As [`render`], and when an edit cannot be made.
-pub fn render_edited<T: Tap>(
+pub fn render_edited(
     scene: Scene,
     renderer: Renderer,
     log: &ContactLog,
     names: &Names,
     options: &Options,
     edits: &mut Edits<'_>,
-    tap: &mut T,
+    tap: &mut dyn Tap,
 ) -> Result<Render, LogError> {
     let (rate, inner_rate) = (renderer.sample_rate_hz(), renderer.inner_rate_hz());
     let every = (inner_rate / rate).round() as u64;
@@ -206,7 +206,7 @@ impl Take {
     /// Renders whole blocks that no coming event can touch, and more when the queue runs full.
     /// Where the queue is flushed does not change the result, because every event carries its
     /// sample.
-    fn make_room<T: Tap>(&mut self, next_event: u64, tap: &mut T) {
+    fn make_room(&mut self, next_event: u64, tap: &mut dyn Tap) {
         let fits = |take: &Self| {
             let ahead = next_event.saturating_sub(take.renderer.game_position()) as usize;
             take.renderer.frames_within(ahead).min(take.left()) >= take.block_frames
@@ -225,7 +225,7 @@ impl Take {
     }
 
     /// Renders until the game's time is there, or the render ends.
-    fn render_to<T: Tap>(&mut self, game_sample: u64, tap: &mut T) {
+    fn render_to(&mut self, game_sample: u64, tap: &mut dyn Tap) {
         while !self.stopped && self.left() > 0 && self.renderer.game_position() < game_sample {
             let ahead = game_sample - self.renderer.game_position();
             let ahead = ahead.min(4 * self.block_frames as u64 + 512) as usize;
@@ -234,7 +234,7 @@ impl Take {
         }
     }
 
-    fn render_block<T: Tap>(&mut self, frames: usize, tap: &mut T) {
+    fn render_block(&mut self, frames: usize, tap: &mut dyn Tap) {
         self.stopped = !tap.goes_on(self.renderer.position(), self.end);
         if self.stopped {
             return;

@@ -27,7 +27,7 @@ fn build(config: Config) -> (Scene, Renderer) {
 }
 
 /// Renders three channels and two buses in blocks.
-fn render<T: Tap>(renderer: &mut Renderer, frames: usize, block: usize, tap: &mut T) -> [Vec<f32>; 5] {
+fn render(renderer: &mut Renderer, frames: usize, block: usize, tap: &mut dyn Tap) -> [Vec<f32>; 5] {
     let mut all: [Vec<f32>; 5] = std::array::from_fn(|_| vec![0.0; frames]);
     let mut at = 0;
     while at < frames {

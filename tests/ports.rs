@@ -76,7 +76,7 @@ impl Game {
     }
 
     /// Everything up to the next step, in blocks of `frames`; what left, a channel each.
-    fn render(&mut self, frames: usize, left: &mut [Vec<f32>; 4], tap: &mut impl Tap) {
+    fn render(&mut self, frames: usize, left: &mut [Vec<f32>; 4], tap: &mut dyn Tap) {
         let until = (f64::from(self.step) / 60.0 * self.renderer.sample_rate_hz()) as u64;
         while self.renderer.position() < until {
             let n = frames.min((until - self.renderer.position()) as usize);

@@ -113,18 +113,18 @@ impl Outlets {
     }
 
     /// Shows contacts to the outlets as well as to a tap.
-    pub(crate) fn beside<'a, T: Tap>(&'a mut self, tap: &'a mut T) -> Beside<'a, T> {
+    pub(crate) fn beside<'a>(&'a mut self, tap: &'a mut dyn Tap) -> Beside<'a> {
         Beside { tap, outlets: self }
     }
 }
 
 /// A tap, and the outlets beside it.
-pub(crate) struct Beside<'a, T> {
-    tap: &'a mut T,
+pub(crate) struct Beside<'a> {
+    tap: &'a mut dyn Tap,
     outlets: &'a mut Outlets,
 }
 
-impl<T: Tap> Tap for Beside<'_, T> {
+impl Tap for Beside<'_> {
     fn is_watching(&self) -> bool {
         self.outlets.watching || self.tap.is_watching()
     }

@@ -163,12 +163,12 @@ impl Voice {
 
     /// Renders a stretch into `scratch.out`; returns what presses on the touched body, at the steps
     /// of the absolute grid.
-    pub(crate) fn render<T: Tap>(
+    pub(crate) fn render(
         &mut self,
         stretch: Segment<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
-        tap: &mut T,
+        tap: &mut dyn Tap,
     ) -> Option<Probe> {
         let pressing = self.pressing_at(stretch, seat);
         let now = self.until_silent(stretch);

@@ -33,6 +33,8 @@ pub(super) struct Motion {
     pub(super) way: [f64; 2],
     pub(super) speed_m_s: f64,
     pub(super) force_n: f64,
+    /// Share of the force by which it jumps from step to step, up and down in turn.
+    pub(super) jumps: f64,
     pub(super) length_s: f64,
     /// Time after it for what rings, s.
     pub(super) pause_s: f64,
@@ -132,17 +134,18 @@ impl Bench {
         motion: &Motion,
     ) -> Power {
         let velocity_m_s = motion.way.map(|share| share * motion.speed_m_s);
-        let sample = |t: f64| {
+        let sample = |step: u32, t: f64| {
             let uv = [0, 1].map(|axis| FROM[axis] + velocity_m_s[axis] * t / size_m[axis]);
-            ContactSample::new(uv, motion.force_n).sliding(velocity_m_s)
+            let jump = if step.is_multiple_of(2) { motion.jumps } else { -motion.jumps };
+            ContactSample::new(uv, motion.force_n * (1.0 + jump)).sliding(velocity_m_s)
         };
         let contact = ContactId(0);
         let touching = touching.felt_by(ChannelId(channel as u16));
         let (mut power, mut frames) = (Power::default(), 0);
         for step in 0..(motion.length_s * STEPS_HZ) as u32 {
             let t = f64::from(step) / STEPS_HZ;
-            let begin = || ContactEvent::begin_with(contact, touching, sample(t));
-            let event = if step == 0 { begin() } else { ContactEvent::moved(contact, sample(t)) };
+            let begin = || ContactEvent::begin_with(contact, touching, sample(step, t));
+            let event = if step == 0 { begin() } else { ContactEvent::moved(contact, sample(step, t)) };
             self.report(t, event);
             self.run_to(self.at_s + (t + 1.0 / STEPS_HZ).min(motion.length_s));
             if t >= SETTLED_S {

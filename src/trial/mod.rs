@@ -23,6 +23,9 @@ pub(crate) const TRIALS: Trials = Trials { of_body, of_surface, content };
 /// Length of each, and time between two of them, s: the next one is louder.
 const FAST_S: f64 = 0.2;
 const FAST_PAUSE_S: f64 = 0.02;
+/// Jumps of their force: a physics engine's contacts carry now less and now more than the weight
+/// that rests on them, from step to step.
+const FAST_JUMPS: f64 = 0.5;
 
 /// Strikes a body and draws it over a plain ground.
 fn of_body(config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
@@ -65,10 +68,15 @@ fn of_surface(
         let both: Vec<[f64; 2]> =
             (0..channels).map(|channel| reference(&mut bench, touching, channel, size_m)).collect();
         let fast = FORCES_N.map(|force_n| {
-            let fast =
-                Motion { speed_m_s: FAST_M_S, length_s: FAST_S, pause_s: FAST_PAUSE_S, ..along(WAYS[1]) };
-            let motion = Motion { force_n, ..fast };
-            bench.stroke(touching, 0, size_m, &motion).heard.sqrt()
+            let fast = Motion {
+                force_n,
+                speed_m_s: FAST_M_S,
+                jumps: FAST_JUMPS,
+                length_s: FAST_S,
+                pause_s: FAST_PAUSE_S,
+                ..along(WAYS[1])
+            };
+            bench.stroke(touching, 0, size_m, &fast).heard.sqrt()
         });
         trials.push(StrokeTrial {
             heard: both.iter().fold(0.0, |most, [heard, _]| f64::max(most, *heard)),
@@ -96,6 +104,7 @@ fn along(way: [f64; 2]) -> Motion {
         way,
         speed_m_s: REFERENCE_SPEED_M_S,
         force_n: REFERENCE_FORCE_N,
+        jumps: 0.0,
         length_s: STROKE_S,
         pause_s: PAUSE_S,
     }

@@ -105,12 +105,12 @@ pub fn render(config: Config, surface: Surface, log: &ContactLog, options: &Opti
 }
 
 /// [`render`] with a tap.
-pub fn render_tapped<T: Tap>(
+pub fn render_tapped(
     config: Config,
     surface: Surface,
     log: &ContactLog,
     options: &Options,
-    tap: &mut T,
+    tap: &mut dyn Tap,
 ) -> Render {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();

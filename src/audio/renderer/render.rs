@@ -41,21 +41,16 @@ impl Renderer {
     }
 
     /// [`render`](Self::render), with a view into every contact.
-    pub fn render_tapped<T: Tap>(
-        &mut self,
-        haptic: &mut [&mut [f32]],
-        audio: &mut [&mut [f32]],
-        tap: &mut T,
-    ) {
+    pub fn render_tapped(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]], tap: &mut dyn Tap) {
         self.render_all(haptic, audio, &mut [], tap);
     }
 
-    pub(crate) fn render_all<T: Tap>(
+    pub(crate) fn render_all(
         &mut self,
         haptic: &mut [&mut [f32]],
         audio: &mut [&mut [f32]],
         pickups: &mut [&mut [f32]],
-        tap: &mut T,
+        tap: &mut dyn Tap,
     ) {
         let frames = shortest(haptic).min(shortest(audio)).min(shortest(pickups));
         let frames = if frames == usize::MAX { 0 } else { frames };
@@ -81,14 +76,14 @@ impl Renderer {
 
     /// Renders `frames` samples in the game's time, into the outputs from `at` on; as many as were
     /// rendered, fewer where the tape begins to run.
-    fn render_on<T: Tap>(
+    fn render_on(
         &mut self,
         at: usize,
         frames: usize,
         haptic: &mut [&mut [f32]],
         audio: &mut [&mut [f32]],
         pickups: &mut [&mut [f32]],
-        tap: &mut T,
+        tap: &mut dyn Tap,
     ) -> usize {
         let every = self.shared.inner.every;
         let (mut done, end, ran) = (at * every, (at + frames) * every, self.tape.runs());

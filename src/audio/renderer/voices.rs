@@ -96,7 +96,7 @@ impl Gathering<'_> {
 }
 
 impl Renderer {
-    pub(super) fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
+    pub(super) fn render_contacts(&mut self, n: usize, tap: &mut dyn Tap) {
         let tap = &mut self.outlets.beside(tap);
         let at = SampleRange { position: self.position, n };
         let watched = tap.is_watching();

@@ -12,12 +12,12 @@ impl Voice {
     /// Shows the stretch to a tap that watches, a row for each sample that leaves; a contact that
     /// has jumped is shown where it is, and not where it fades. Rows describe the instant
     /// `row_latency` samples back, so the path's points are delayed by as much.
-    pub(super) fn show<T: Tap>(
+    pub(super) fn show(
         &mut self,
         stretch: Segment<'_>,
         seat: &Seat,
         scratch: &mut Scratch,
-        tap: &mut T,
+        tap: &mut dyn Tap,
     ) {
         let Some(slot) = seat.current().filter(|_| tap.is_watching() && !self.left_behind) else { return };
         let Segment { shared, position, n, .. } = stretch;
