@@ -436,6 +436,35 @@ fn what_falls_hard_is_louder_than_a_tap() {
 }
 
 #[test]
+fn what_is_thrown_at_a_cushion_or_a_bowl_stays_within_nine_decibels_of_full_scale() {
+    for (name, kind) in Stock::ALL {
+        for of in ["steel", "wood", "denim"] {
+            let mut played = Played::new(live(LevelPolicy::Shared));
+            let of = Material::by_name(of).unwrap();
+            let body = played.body(Body::stock(kind, of, 0.3).unwrap());
+            for striker in ["steel", "rubber", "foam"] {
+                for mass_kg in [0.05, 20.0] {
+                    let (striker, radius_m) =
+                        (Material::by_name(striker).unwrap(), 0.05 * f64::cbrt(mass_kg));
+                    let blow = Impact {
+                        mass_kg,
+                        radius_m,
+                        striker,
+                        speed_m_s: 2.4,
+                        restitution: 0.0,
+                        ..Impact::on(body)
+                    };
+                    played.step(Some(ContactEvent::Impact(blow)));
+                    (0..9).for_each(|_| played.step(None));
+                    let by_db = played.renderer.limiter_db();
+                    assert!(by_db < 9.0, "{name}, {mass_kg} kg of {striker:?}: {by_db} dB");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn what_slides_faster_or_heavier_is_not_softer() {
     let slid = |force_n: f64, speed_m_s: f64| {
         let mut played = Played::new(live(LevelPolicy::Shared));

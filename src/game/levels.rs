@@ -4,7 +4,6 @@
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::body::Body;
 use crate::model::config::Config;
-use crate::model::diffuse::DiffuseBand;
 use crate::model::error::AddError;
 use crate::model::level_policy::LevelPolicy;
 use crate::model::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE, SILENT, STRIKE, STRIKE_REFERENCE};
@@ -97,7 +96,7 @@ const TIME_RATIO: f64 = 2.0;
 /// ```
 /// p: envelope of the spectrum of Hertz' pulse (within 4 dB); c: that of the reference strike,
 /// whose modes do not peak at once. q: half the share with which a mode follows a slow force, since
-/// not all push alike. aᵢ, fᵢ: modes, and bands at the root of their energy, which follow nothing.
+/// not all push alike. aᵢ, fᵢ: modes and bands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BlowPeaks([f64; TIMES]);
 
@@ -107,23 +106,14 @@ impl BlowPeaks {
 
     /// Peaks of a body at a gain; that of the reference strike is known at a gain of 1.
     fn of(body: &Body, gain: f64, reference_per_n_s: f64) -> Self {
-        let modes = &body.model.modes;
-        let sum = |share: &dyn Fn(f64) -> f64| -> f64 {
-            modes.iter().map(|mode| mode.amplitude.abs() * share(mode.frequency_hz)).sum()
-        };
-        let bands = body.model.diffuse.iter().flat_map(|diffuse| &diffuse.bands);
-        let energy = |band: &DiffuseBand| band.parts.iter().map(|part| part.energy).sum::<f64>();
-        let lines: Vec<(f64, f64)> = bands.map(|band| (band.centre_hz, energy(band).sqrt())).collect();
-        let rung = |time_s: f64| {
-            let share = |hz: f64| spectrum(hz * time_s);
-            if modes.is_empty() { lines.iter().map(|(hz, a)| a * share(*hz)).sum() } else { sum(&share) }
-        };
-        let known: f64 = rung(reference_time_s(body.material));
+        let lines = lines(&body.model);
+        let sum = |share: &dyn Fn(f64) -> f64| lines.iter().map(|[hz, a]| a * share(*hz)).sum::<f64>();
+        let rung = |time_s: f64| sum(&|hz| spectrum(hz * time_s));
+        let known = rung(reference_time_s(body.material));
         let unit = gain * reference_per_n_s / known.max(f64::MIN_POSITIVE);
-        let pushed = gain / body.model.impulse_n_s;
         Self(std::array::from_fn(|k| {
             let time_s = SHORTEST_S * TIME_RATIO.powi(k as i32);
-            f64::max(unit * rung(time_s), pushed * sum(&|hz| followed(hz * time_s)))
+            f64::max(unit * rung(time_s), gain * sum(&|hz| followed(hz * time_s)))
         }))
     }
 
@@ -139,6 +129,14 @@ impl BlowPeaks {
         let [low, high] = [self.0[below], self.0[below + 1]];
         pulse.impulse_n_s * (low + (steps - below as f64) * (high - low))
     }
+}
+
+/// Frequency, Hz, and amplitude after 1 N·s of each mode and of each band.
+fn lines(model: &ModalModel) -> Vec<[f64; 2]> {
+    let modes = model.modes.iter().map(|mode| [mode.frequency_hz, mode.amplitude.abs()]);
+    let bands = model.diffuse.iter().flat_map(|diffuse| &diffuse.bands);
+    let bands = bands.map(|band| [band.centre_hz, band.amplitude()]);
+    modes.chain(bands).map(|[hz, a]| [hz, a / model.impulse_n_s]).collect()
 }
 
 /// Spectrum of a pulse of this duration, periods of a mode, over that of an impulse.

@@ -35,6 +35,13 @@ pub struct DiffuseBand {
     pub parts: Vec<DiffusePart>,
 }
 
+impl DiffuseBand {
+    /// Amplitude of its envelope at the strike.
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.parts.iter().map(|part| (4.0 * part.decay_per_s * part.energy).sqrt()).sum()
+    }
+}
+
 impl Diffuse {
     /// The field that is wrong, its value and what would be accepted.
     pub(crate) fn check(&self) -> Result<(), (String, f64, &'static str)> {
