@@ -231,6 +231,59 @@ test('a closed tab loses no answer, and two windows do not mix', async () => {
   await context.close();
 });
 
+test('every study of the sources starts and asks its first question', async () => {
+  const studies = { 'six-plates': ['study'], 'seven-materials': ['study', 'ratings'], metamers: ['study'], heights: ['study'], dimension: ['study'] };
+  for (const [name, files] of Object.entries(studies)) {
+    asperity('study', '--example', name, '-o', name);
+    for (const file of files) {
+      asperity('study', `${name}/${file}.toml`, '-o', `${name}/${file}-page`);
+      const { page, context, wrong } = await open(pathToFileURL(join(folder, name, `${file}-page/index.html`)).href);
+      for (const word of ['I agree', 'Continue', 'Start']) await page.click(`button:has-text("${word}")`);
+      await page.waitForFunction(() => /^Trial 1 of/.test(document.querySelector('h1').textContent));
+      await page.waitForTimeout(200);
+      const pictures = await page.$$eval('#screen img', (all) => all.map((one) => one.naturalWidth));
+      assert.ok(pictures.every((width) => width > 0) && (file !== 'ratings' || pictures.length === 1), `${name} ${file}: ${pictures}`);
+      await page.screenshot({ path: join(PICTURES, `study-${name}-${file}.png`), fullPage: true });
+      assert.deepEqual(wrong, []);
+      await context.close();
+    }
+  }
+});
+
+test('five names for six things come back as a matrix of five columns', async () => {
+  const six = ['a', 'b', 'c', 'd', 'e', 'f'];
+  for (const name of six) tone(`${name}.wav`, 0.5);
+  const url = study('five', 'title = "Five"\nprotocol = "identification"\ntrials = 2\nseed = 2\ntraining = false\nlabels = ["a", "b", "c", "d", "e"]\n', six.map((name) => ({ name, wav: `${name}.wav`, label: name === 'f' ? 'e' : name })));
+  const { page, context } = await open(url);
+  await listen(page, "([one]) => (one.name === 'f' ? 'e' : one.name)");
+  const report = analysed('five.csv', await kept(page));
+  assert.equal(report.share_correct.value, 1);
+  assert.deepEqual(report.confusion.labels, six.slice(0, 5));
+  assert.deepEqual(report.confusion.counts.map((row) => row.reduce((x, y) => x + y)), [2, 2, 2, 2, 4]);
+  await context.close();
+});
+
+test('touch goes to the output that was chosen, sound to the usual one', async () => {
+  const url = study('touch', 'title = "Touch"\nprotocol = "identification"\ntrials = 1\nseed = 2\nsenses = "both"\ntraining = false\n', ['a', 'b'].map((name) => ({ name, wav: `${name}.wav`, haptic_wav: `${name}.wav` })));
+  const { page, context } = await open(url);
+  await page.evaluate(() => {
+    window.sinks = [];
+    const outputs = ['speaker', 'actuator'].map((deviceId) => ({ kind: 'audiooutput', deviceId, label: deviceId }));
+    Object.assign(navigator.mediaDevices, { getUserMedia: async () => new MediaStream(), enumerateDevices: async () => outputs });
+    HTMLMediaElement.prototype.setSinkId = async function sink(id) { window.sinks.push([new URL(this.src).pathname.split('.').at(-2), id]); };
+  });
+  await page.click('button:has-text("I agree")');
+  await page.click('button:has-text("Find outputs")');
+  await page.waitForFunction(() => document.querySelectorAll('#output option').length === 2);
+  await page.selectOption('#output', 'actuator');
+  await page.screenshot({ path: join(PICTURES, 'study-outputs.png') });
+  await page.click('button:has-text("Play")');
+  await page.waitForFunction(() => window.played.length === 2);
+  assert.deepEqual(await page.evaluate(() => window.sinks), [['touch', 'actuator']]);
+  assert.deepEqual((await page.evaluate(() => window.played)).map((file) => file.split('.')[1]).sort(), ['sound', 'touch']);
+  await context.close();
+});
+
 test('served, every answer lies on the disc before the next is asked', async () => {
   const program = spawn(process.env.ASPERITY_PROGRAM, ['study', 'names.toml', '--serve', '-o', 'served'], { cwd: folder });
   const address = await new Promise((resolve) => program.stdout.on('data', (data) => { const found = /serving (\S+)/.exec(data); if (found) resolve(found[1]); }));
