@@ -128,12 +128,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
     let mut progress = Progress::new("measuring", PARTS.len() as u64);
     let mut parts = Vec::new();
+    if let Some(folder) = &options.recordings {
+        parts.push(measured::recordings(folder, options.quick)?);
+    }
     for (name, measure) in PARTS {
         parts.push(measure(options.quick).map_err(|error| error.within(name))?);
         progress.advance(1);
-    }
-    if let Some(folder) = &options.recordings {
-        parts.push(measured::recordings(folder, options.quick)?);
     }
     drop(progress);
     let card = card(options.quick, parts);
