@@ -7,7 +7,7 @@
 
 use crate::common;
 
-use asperity::{Extent, Quantity, Surface, Wrap};
+use asperity::{Quantity, Surface};
 use asperity_evidence::abrasive::{FRICTION_DB, MEASURED_M_S2, SIDE_M as ABRASIVE_M, abrasive};
 use common::plate;
 use common::strokes::{
