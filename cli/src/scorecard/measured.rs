@@ -37,7 +37,7 @@ pub fn kernels(quick: bool) -> Result<Part> {
     part.row("modal bank in f32, worst case, dB", db, [None, Some(-80.0)], anchor);
     let path = TrajectoryDesign::new(PathMode::default(), 30.0, 44_100.0, [f64::INFINITY; 2]);
     let lag_ms = 1e3 * path.map_err(CliError::from_error)?.lag_s();
-    let anchor = ("Butterworth of second order, 30 Hz: √2/ω", HASTI, command);
+    let anchor = ("Butterworth of second order, 30 Hz: √2/ω", "Chan, Tymms and Colonnese 2021", command);
     part.row("path behind its reports, ms", lag_ms, [Some(7.4), Some(7.6)], anchor);
     if quick {
         return Ok(part);
