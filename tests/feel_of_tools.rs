@@ -7,11 +7,8 @@
 
 use crate::common;
 
-use asperity::{Extent, Quantity, Surface, Wrap};
-use asperity_dsp::rng::Rng;
-use asperity_fft::{FftPlanner, num_complex::Complex};
-use asperity_surface::height_map::HeightMap;
-use asperity_surface::raster::Raster;
+use asperity::{Quantity, Surface};
+use asperity_evidence::abrasive::{FRICTION_DB, MEASURED_M_S2, SIDE_M as ABRASIVE_M, abrasive};
 use common::plate;
 use common::strokes::{
     brownian, exponents, map, power, relief, rms_and_centroid, take, take_over, third_octaves_db,
@@ -21,10 +18,6 @@ const SPEEDS_M_S: [f64; 3] = [0.04, 0.12, 0.24];
 const FORCES_N: [f64; 3] = [0.3, 1.5, 5.0];
 /// The cell at which levels and spectra are told: 120 mm/s, 1.5 N.
 const REFERENCE: (usize, usize) = (1, 1);
-/// Abrasive papers of grit 100, 220 and 320 there, m/s².
-const ABRASIVES_M_S2: [f64; 3] = [6.5, 2.4, 1.5];
-/// Share of friction in what a three-axis sensor measures on such ground, dB: 3 to 5.
-const FRICTION_DB: f64 = 4.0;
 /// Median level of the third octaves from 20 to 400 Hz, dB re their sum.
 const SHAPE_DB: [f64; 14] =
     [-15.5, -14.1, -13.4, -12.3, -11.4, -10.8, -10.1, -10.0, -9.5, -9.5, -10.0, -12.6, -16.2, -22.9];
@@ -135,52 +128,20 @@ fn a_stylus_is_shaken_as_measured_tools_are() {
     );
 }
 
-/// Side of the abrasives, m.
-const ABRASIVE_M: f64 = 0.04;
-
-/// Grains of a nominal size: flat above twice the size, self-affine below (H 0.8); the rms is 0.27
-/// of the size, as profilometers find on coated abrasives.
-fn abrasive(grain_m: f64) -> Surface {
-    const SIDE: usize = 1024;
-    let side_m = ABRASIVE_M;
-    let mut rng = Rng::new(3);
-    let mut spectrum = vec![Complex::new(0.0, 0.0); SIDE * SIDE];
-    let turns = |i: usize| if i < SIDE / 2 { i as f64 } else { i as f64 - SIDE as f64 };
-    for (index, bin) in spectrum.iter_mut().enumerate() {
-        let k = turns(index % SIDE).hypot(turns(index / SIDE)) / side_m * 2.0 * grain_m;
-        *bin = Complex::new(rng.normal(), rng.normal()) * k.max(1.0).powf(-1.8);
-    }
-    spectrum[0] = Complex::new(0.0, 0.0);
-    let plan = FftPlanner::new().plan_fft_inverse(SIDE);
-    for _ in 0..2 {
-        plan.process(&mut spectrum);
-        spectrum = (0..SIDE * SIDE).map(|i| spectrum[i % SIDE * SIDE + i / SIDE]).collect();
-    }
-    let values: Vec<f64> = spectrum.iter().map(|bin| bin.re).collect();
-    let rms = (values.iter().map(|h| h * h).sum::<f64>() / values.len() as f64).sqrt();
-    let raster = Raster {
-        width: SIDE,
-        height: SIDE,
-        values: values.iter().map(|h| 0.27 * grain_m * h / rms).collect(),
-    };
-    let extent = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
-    Surface::new(HeightMap::new(&raster, extent, Wrap::Repeat).unwrap(), side_m, side_m).unwrap()
-}
-
 #[test]
 fn coarser_abrasives_shake_a_stylus_more() {
     // FEPA P60, then grit 100, 220 and 320 of the measurement, which gives the last three.
     let grains_m = [269e-6, 141e-6, 66e-6, 36e-6];
     let levels = grains_m.map(|grain_m| {
         let cell = (SPEEDS_M_S[REFERENCE.0], FORCES_N[REFERENCE.1]);
-        let take = take_over(ABRASIVE_M, "stylus", abrasive(grain_m), cell, Quantity::Acceleration);
+        let take = take_over(ABRASIVE_M, "stylus", abrasive(grain_m).unwrap(), cell, Quantity::Acceleration);
         let (level, centroid_hz) =
             rms_and_centroid(&power(&take.haptic[0], take.sample_rate_hz), 10.0, 500.0);
         println!("grains of {:.0} µm: {level:.2} m/s², {centroid_hz:.0} Hz", grain_m * 1e6);
         level
     });
     assert!(levels.windows(2).all(|pair| pair[0] > pair[1]), "{levels:?}");
-    for (level, measured_m_s2) in levels[1..].iter().zip(ABRASIVES_M_S2) {
+    for (level, measured_m_s2) in levels[1..].iter().zip(MEASURED_M_S2) {
         let off_db = 20.0 * (level / measured_m_s2).log10() + FRICTION_DB;
         println!("{off_db:+.1} dB of {measured_m_s2} m/s²");
         assert!((-9.0..8.0).contains(&off_db), "{off_db} dB of {measured_m_s2} m/s²");

@@ -59,7 +59,9 @@ fn a_stranger_s_scenes_and_wavs_become_one_page_with_numbered_stimuli() {
 #[test]
 fn every_example_is_a_study_that_becomes_a_page() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, stimuli) in [("six-plates", 18), ("seven-materials", 21), ("heights", 6), ("dimension", 5)] {
+    for (name, stimuli) in
+        [("six-plates", 18), ("seven-materials", 21), ("metamers", 10), ("heights", 6), ("dimension", 5)]
+    {
         let (status, out, err) = told(&asperity(folder.path(), &["study", "--example", name, "-o", name]));
         assert_eq!((status, err.as_str()), (0, ""));
         assert!(out.contains("next: asperity study"), "{out}");

@@ -51,6 +51,7 @@ async function open(url, context) {
   page.on('request', (request) => { if (!/^(file:|http:\/\/127\.0\.0\.1|data:|blob:)/.test(request.url())) wrong.push(`asks ${request.url()}`); });
   await page.addInitScript(stub);
   await page.goto(url);
+  await page.waitForSelector('h1');
   return { context: own, page, wrong };
 }
 /** A listener who runs in the page: `answer(shown)` gets the stimuli that were played since the last answer, and names a button. */
@@ -222,12 +223,67 @@ test('a closed tab loses no answer, and two windows do not mix', async () => {
   await other.page.waitForFunction(() => /another window/.test(document.getElementById('said').textContent));
   await listen(other.page, '([one]) => one.name', 3);
   await listen(again.page, '([one]) => one.name', 2);
-  const runs = Object.fromEntries((await kept(other.page)).map((run) => [run.participant, run.rows]));
+  // Each in its own window: a busy machine shows one window's answers to another a moment later.
+  const own = async ({ page }, participant) => (await kept(page)).find((run) => run.participant === participant).rows;
+  const runs = { one: await own(again, 'one'), two: await own(other, 'two') };
   assert.deepEqual([runs.one.length, runs.two.length], [7, 3]);
   assert.deepEqual(runs.one.map((row) => row.trial), [1, 2, 3, 4, 5, 6, 7]);
   assert.ok(runs.two.every((row) => row.participant === 'two'));
   // The order goes on where it was: every stimulus once in a round of three.
   for (const round of [0, 3]) assert.equal(new Set(runs.one.slice(round, round + 3).map((row) => row.stimulus)).size, 3);
+  await context.close();
+});
+
+test('every study of the sources starts and asks its first question', async () => {
+  const studies = { 'six-plates': ['study'], 'seven-materials': ['study', 'ratings'], metamers: ['study'], heights: ['study'], dimension: ['study'] };
+  for (const [name, files] of Object.entries(studies)) {
+    asperity('study', '--example', name, '-o', name);
+    for (const file of files) {
+      asperity('study', `${name}/${file}.toml`, '-o', `${name}/${file}-page`);
+      const { page, context, wrong } = await open(pathToFileURL(join(folder, name, `${file}-page/index.html`)).href);
+      for (const word of ['I agree', 'Continue', 'Start']) await page.click(`button:has-text("${word}")`);
+      await page.waitForFunction(() => /^Trial 1 of/.test(document.querySelector('h1').textContent));
+      await page.waitForTimeout(200);
+      const pictures = await page.$$eval('#screen img', (all) => all.map((one) => one.naturalWidth));
+      assert.ok(pictures.every((width) => width > 0) && (file !== 'ratings' || pictures.length === 1), `${name} ${file}: ${pictures}`);
+      await page.screenshot({ path: join(PICTURES, `study-${name}-${file}.png`), fullPage: true });
+      assert.deepEqual(wrong, []);
+      await context.close();
+    }
+  }
+});
+
+test('five names for six things come back as a matrix of five columns', async () => {
+  const six = ['a', 'b', 'c', 'd', 'e', 'f'];
+  for (const name of six) tone(`${name}.wav`, 0.5);
+  const url = study('five', 'title = "Five"\nprotocol = "identification"\ntrials = 2\nseed = 2\ntraining = false\nlabels = ["a", "b", "c", "d", "e"]\n', six.map((name) => ({ name, wav: `${name}.wav`, label: name === 'f' ? 'e' : name })));
+  const { page, context } = await open(url);
+  await listen(page, "([one]) => (one.name === 'f' ? 'e' : one.name)");
+  const report = analysed('five.csv', await kept(page));
+  assert.equal(report.share_correct.value, 1);
+  assert.deepEqual([report.confusion.labels, report.confusion.answers], [six, six.slice(0, 5)]);
+  assert.deepEqual(report.confusion.counts, six.map((_, row) => [0, 1, 2, 3, 4].map((column) => (Math.min(row, 4) === column ? 2 : 0))));
+  await context.close();
+});
+
+test('touch goes to the output that was chosen, sound to the usual one', async () => {
+  const url = study('touch', 'title = "Touch"\nprotocol = "identification"\ntrials = 1\nseed = 2\nsenses = "both"\ntraining = false\n', ['a', 'b'].map((name) => ({ name, wav: `${name}.wav`, haptic_wav: `${name}.wav` })));
+  const { page, context } = await open(url);
+  await page.evaluate(() => {
+    window.sinks = [];
+    const outputs = ['speaker', 'actuator'].map((deviceId) => ({ kind: 'audiooutput', deviceId, label: deviceId }));
+    Object.assign(navigator.mediaDevices, { getUserMedia: async () => new MediaStream(), enumerateDevices: async () => outputs });
+    HTMLMediaElement.prototype.setSinkId = async function sink(id) { window.sinks.push([new URL(this.src).pathname.split('.').at(-2), id]); };
+  });
+  await page.click('button:has-text("I agree")');
+  await page.click('button:has-text("Find outputs")');
+  await page.waitForFunction(() => document.querySelectorAll('#output option').length === 2);
+  await page.selectOption('#output', 'actuator');
+  await page.screenshot({ path: join(PICTURES, 'study-outputs.png') });
+  await page.click('button:has-text("Play")');
+  await page.waitForFunction(() => window.played.length === 2);
+  assert.deepEqual(await page.evaluate(() => window.sinks), [['touch', 'actuator']]);
+  assert.deepEqual((await page.evaluate(() => window.played)).map((file) => file.split('.')[1]).sort(), ['sound', 'touch']);
   await context.close();
 });
 

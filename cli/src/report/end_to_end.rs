@@ -253,6 +253,21 @@ pub fn presets() -> Result<Vec<Preset>, CliError> {
         .collect()
 }
 
+/// The error of a preset on the worst contractive case, felt or heard, dB.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn worst_db(preset: EnginePreset) -> Result<f64, CliError> {
+    let (seed, mut worst_db) = (*SEEDS.start(), f64::NEG_INFINITY);
+    for case in &CASES {
+        if is_contractive(case, seed)? {
+            let [felt, heard] = stages(case, seed, preset, &Reference::new(case, seed, None)?)?;
+            worst_db = worst_db.max(decibels(felt[0])).max(decibels(heard[0]));
+        }
+    }
+    Ok(worst_db)
+}
+
 /// The whole renderer, one contact, of each preset: the median over the cases of the best of some
 /// rounds, in turns.
 fn ns_per_sample() -> Result<Vec<f64>, CliError> {

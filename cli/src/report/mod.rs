@@ -6,7 +6,7 @@
 mod blocks;
 mod cases;
 mod choices;
-mod end_to_end;
+pub mod end_to_end;
 mod excitation;
 mod from_reports;
 pub mod integrator;

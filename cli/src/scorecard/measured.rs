@@ -5,14 +5,17 @@ use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
 use crate::report;
 use asperity::surface::solid_materials::SolidMaterial;
-use asperity::{Config, Quantity, Surface};
+use asperity::{Config, PathMode, Preset, Quantity, Surface};
 use asperity_dsp::rng::Rng;
-use asperity_evidence::growth::growth;
+use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_evidence::abrasive;
+use asperity_evidence::growth::{growth, rms};
 use asperity_evidence::plates::{self, CONDITIONS, PLATES, Table};
 use asperity_evidence::{cramer_rao, impact, score};
-use asperity_fit::{FitOptions, Recording, fit as fit_recording};
+use asperity_fit::{ChannelChoice, FitOptions, Recording, fit as fit_recording, load};
 use asperity_ports::score::Reference;
 use asperity_ports::{Device, reduction};
+use std::path::Path;
 
 type Result<T> = std::result::Result<T, CliError>;
 
@@ -20,31 +23,39 @@ const HASTI: &str = "Chan, Tymms and Colonnese 2021, Fig. 10";
 const SOLID: &str = "solid-noise textures, 16 people";
 const HATT: &str = "Penn Haptic Texture Toolkit, 96 materials";
 const OWN: &str = "own reference";
+/// Recordings that are looked for in a folder.
+const SOUNDS: [&str; 8] = ["wav", "aif", "aiff", "flac", "ogg", "mp3", "m4a", "oga"];
 
-/// Contact and bank against their references.
+/// Contact, path, bank and the whole chain against their references.
 pub fn kernels(quick: bool) -> Result<Part> {
     let mut part = Part::default();
+    let command = "asperity report -o DIR";
     let bank = report::modes::format_rows()?;
     let worst = bank.iter().filter(|row| row.choice.starts_with("delta form, f32")).map(|row| row.worst);
     let db = 20.0 * worst.fold(0.0, f64::max).log10();
-    part.row(
-        "modal bank in f32, worst case, dB",
-        db,
-        [None, Some(-80.0)],
-        ("direct form in f64", OWN, "asperity report -o DIR"),
-    );
+    let anchor = ("direct form in f64", OWN, command);
+    part.row("modal bank in f32, worst case, dB", db, [None, Some(-80.0)], anchor);
+    let path = TrajectoryDesign::new(PathMode::default(), 30.0, 44_100.0, [f64::INFINITY; 2]);
+    let lag_ms = 1e3 * path.map_err(CliError::from_error)?.lag_s();
+    let anchor = ("Butterworth of second order, 30 Hz: √2/ω", "Chan, Tymms and Colonnese 2021", command);
+    part.row("path behind its reports, ms", lag_ms, [Some(7.4), Some(7.6)], anchor);
     if quick {
         return Ok(part);
     }
-    for row in report::integrator::rows()?.iter().filter(|row| row.choice == "exact-event") {
-        let anchor = ("8 times the rate, relative to AC rms", OWN, "asperity report -o DIR");
-        part.row(
-            "contact, exact-event: geometric mean of errors",
-            row.geometric_mean,
-            [None, Some(1e-3)],
-            anchor,
-        );
+    for row in report::integrator::rows()? {
+        let most = match row.choice.as_str() {
+            "exact-event" => 1e-3,
+            "semi-implicit-euler" => 3e-2,
+            "semi-implicit-euler-explicit" => 1e-1,
+            _ => continue,
+        };
+        let name = format!("contact, {}: geometric mean of errors", row.choice);
+        let anchor = ("8 times the rate, relative to AC rms", OWN, command);
+        part.row(name, row.geometric_mean, [None, Some(most)], anchor);
     }
+    let anchor = ("everything in f64 at 16 times the rate", OWN, command);
+    let db = report::end_to_end::worst_db(Preset::Default)?;
+    part.row("chain, worst case that forgets how it began, dB", db, [None, Some(-40.0)], anchor);
     Ok(part)
 }
 
@@ -78,6 +89,37 @@ pub fn fit(quick: bool) -> Result<Part> {
         [Some(30.0), None],
         anchor,
     );
+    Ok(part)
+}
+
+/// Recordings of hits in a folder: how much of each its modes explain.
+pub fn recordings(folder: &Path, quick: bool) -> Result<Part> {
+    let unread = |error: std::io::Error| CliError::file(folder, error, "give a folder of recordings of hits");
+    let entries = std::fs::read_dir(folder).map_err(unread)?;
+    let mut paths =
+        entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>().map_err(unread)?;
+    let is_sound = |ending: &str| SOUNDS.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    paths.retain(|path| path.extension().and_then(|ending| ending.to_str()).is_some_and(is_sound));
+    paths.sort();
+    paths.truncate(if quick { 3 } else { usize::MAX });
+    let mut snr_db = Vec::new();
+    for path in &paths {
+        let refused = |error: String| CliError::file(path, error, "take it out of the folder");
+        let recording = load(path, ChannelChoice::Loudest).map_err(|error| refused(error.to_string()))?;
+        let fitted = fit_recording(&recording, &FitOptions::default(), &mut |_| {});
+        snr_db.push(fitted.map_err(|error| refused(error.to_string()))?.snr_from_onset_db);
+    }
+    snr_db.sort_by(f64::total_cmp);
+    let (Some(least), Some(median)) = (snr_db.first(), snr_db.get(snr_db.len() / 2)) else {
+        return Err(CliError::file(folder, "holds no recording", "give a folder of recordings of hits"));
+    };
+    let mut part = Part::default();
+    let count = asperity_plot::counted(snr_db.len() as u64, "recording");
+    let command = "asperity fit HIT.wav -o HIT.modes.json";
+    let anchor = ("instruments 20, household objects 8", "public recordings", command);
+    part.row(format!("fit of {count}: SNR from the onset, median, dB"), *median, [Some(8.0), None], anchor);
+    let anchor = ("none worse than silence", "public recordings", command);
+    part.row(format!("fit of {count}: SNR from the onset, least, dB"), *least, [Some(0.0), None], anchor);
     Ok(part)
 }
 
@@ -208,6 +250,11 @@ pub fn growth_laws(_quick: bool) -> Result<Part> {
         [Some(0.37), Some(4.7)],
         ("1.07, 0.37–4.7", HATT, command),
     );
+    let ground = (abrasive::abrasive(141e-6).map_err(CliError::from_error)?, abrasive::SIDE_M);
+    let level = rms("stylus", Quantity::Acceleration, ground, 0.12, 1.5)?;
+    let off_db = 20.0 * (level / abrasive::MEASURED_M_S2[0]).log10() + abrasive::FRICTION_DB;
+    let anchor = ("6.5 m/s², of which friction is 4 dB", HATT, command);
+    part.row("stylus on abrasive of grit 100: level, dB", off_db, [Some(-9.0), Some(8.0)], anchor);
     part.row(
         "growth, fingertip: exponent of speed",
         finger.speed_exponent,

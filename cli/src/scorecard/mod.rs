@@ -22,6 +22,9 @@ pub struct Options {
     /// Folder for index.html and scorecard.json
     #[arg(short, long = "output", value_name = "DIR")]
     output: PathBuf,
+    /// Recordings of hits to fit as well, a folder
+    #[arg(long, value_name = "DIR")]
+    recordings: Option<PathBuf>,
     /// Fewer trials and no long references: another, coarser set of rows
     #[arg(long)]
     quick: bool,
@@ -124,24 +127,16 @@ pub struct Card {
 pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
     let mut progress = Progress::new("measuring", PARTS.len() as u64);
-    let mut card = Card {
-        version: env!("CARGO_PKG_VERSION"),
-        quick: options.quick,
-        observers: [
-            Observer { name: "first", sha256: constants::constants_sha256() },
-            Observer { name: "second", sha256: second::constants_sha256() },
-        ],
-        rows: Vec::new(),
-        confusion: BTreeMap::new(),
-    };
+    let mut parts = Vec::new();
+    if let Some(folder) = &options.recordings {
+        parts.push(measured::recordings(folder, options.quick)?);
+    }
     for (name, measure) in PARTS {
-        let part = measure(options.quick).map_err(|error| error.within(name))?;
-        card.rows.extend(part.rows);
-        card.confusion.extend(part.confusion);
+        parts.push(measure(options.quick).map_err(|error| error.within(name))?);
         progress.advance(1);
     }
     drop(progress);
-    card.rows.sort_by_key(|row| row.pass);
+    let card = card(options.quick, parts);
     let mut outputs = Outputs::new();
     let json = serde_json::to_string_pretty(&card).map_err(CliError::from_error)?;
     outputs.write(&options.output.join("scorecard.json"), format!("{json}\n").as_bytes())?;
@@ -151,16 +146,32 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         output::say(&json);
         return Ok(());
     }
-    let failed: Vec<&str> = card.rows.iter().filter(|row| !row.pass).map(|row| &*row.name).collect();
-    let count = asperity_plot::counted(card.rows.len() as u64, "row");
-    output::say(&format!(
-        "{count}, {} outside their bounds{}{}",
-        failed.len(),
-        if failed.is_empty() { "" } else { ": " },
-        failed.join("; ")
-    ));
+    output::say(&summary(&card.rows));
     output::say(&format!("wrote {}", options.output.join("index.html").display()));
     Ok(())
+}
+
+/// The card of some parts, failures first.
+fn card(quick: bool, parts: Vec<Part>) -> Card {
+    let observers = [
+        Observer { name: "first", sha256: constants::constants_sha256() },
+        Observer { name: "second", sha256: second::constants_sha256() },
+    ];
+    let (mut rows, mut confusion) = (Vec::new(), BTreeMap::new());
+    for part in parts {
+        rows.extend(part.rows);
+        confusion.extend(part.confusion);
+    }
+    rows.sort_by_key(|row: &Row| row.pass);
+    Card { version: env!("CARGO_PKG_VERSION"), quick, observers, rows, confusion }
+}
+
+/// Rows, and the names of those outside their bounds.
+fn summary(rows: &[Row]) -> String {
+    let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| &*row.name).collect();
+    let count = asperity_plot::counted(rows.len() as u64, "row");
+    let colon = if failed.is_empty() { "" } else { ": " };
+    format!("{count}, {} outside their bounds{colon}{}", failed.len(), failed.join("; "))
 }
 
 #[cfg(test)]
@@ -176,5 +187,20 @@ mod tests {
         assert_eq!(part.rows.iter().map(|row| row.pass).collect::<Vec<_>>(), [false, true, false]);
         part.rows.sort_by_key(|row| row.pass);
         assert!(!part.rows[0].pass && part.rows[2].pass);
+    }
+
+    #[test]
+    fn a_row_that_was_made_to_fail_is_shown_first_and_named() {
+        let mut part = Part::default();
+        for (name, most) in [("holds", 1.0), ("made to fail", 0.4), ("holds too", 1.0)] {
+            part.row(name, 0.5, [None, Some(most)], ("an anchor", "own reference", "asperity report -o DIR"));
+        }
+        let card = card(false, vec![part]);
+        assert_eq!(card.rows[0].name, "made to fail");
+        assert_eq!(summary(&card.rows), "3 rows, 1 outside their bounds: made to fail");
+        let page = page::html(&card);
+        let first = page.split_once("<tr class=").unwrap().1;
+        assert!(first.starts_with("\"fails\"><td>made to fail</td>"), "{first}");
+        assert!(page.contains("<code>asperity report -o DIR</code>"));
     }
 }

@@ -20,6 +20,7 @@ use asperity_evidence::compare::all_like_the_first;
 use asperity_pictures::metamer::Method;
 use asperity_plot::pixels;
 use asperity_surface::raster::Raster;
+use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -169,14 +170,21 @@ impl Example<'_> {
         for (index, material) in MATERIALS.into_iter().enumerate() {
             let name = material.name();
             let file = name.replace(' ', "-");
+            self.file(&format!("{file}.png"), &solid_picture(material)?)?;
             for take in 1..=TAKES {
                 let toml = surface(&format!("solid = \"{name}\"\nmicro_relief_m = 0.0\n"), SIDE_M);
                 self.stroked(name, &format!("{file}-{take}"), (10 * index as u64 + take, SIDE_M), &toml, "")?;
             }
         }
-        let stimuli = self.study[self.study.find("\n[[").unwrap_or(0)..].to_owned();
+        // Named by touch or ear alone, rated beside the picture of what it shall be.
+        let mut stimuli = self.study[self.study.find("\n[[").unwrap_or(0)..].to_owned();
+        for name in MATERIALS.map(SolidMaterial::name) {
+            let line = format!("name = \"{name}\"\n");
+            let picture = format!("{line}picture = \"{}.png\"\n", name.replace(' ', "-"));
+            stimuli = stimuli.replace(&line, &picture);
+        }
         let asked = std::mem::take(&mut self.study);
-        self.head("Seven materials: how real?", "rating", 1, "scales = [\"realism\", \"correspondence\"]\nquestion = \"Compared with the real material, from 0 (not at all) to 100 (completely)\"\n");
+        self.head("Seven materials: how real?", "rating", 1, "scales = [\"realism\", \"correspondence\"]\nquestion = \"Compared with the material in the picture, from 0 (not at all) to 100 (completely)\"\n");
         let ratings = std::mem::replace(&mut self.study, asked) + &stimuli;
         self.file("ratings.toml", ratings.as_bytes())
     }
@@ -289,6 +297,22 @@ fn picture(plate: &Plate) -> Vec<u8> {
         (130.0 + 0.05 * slope + gloss + grain).clamp(0.0, 255.0) as u8
     });
     pixels::png8(size, size, &grey.collect::<Vec<u8>>())
+}
+
+/// A solid of 35 mm lit from the left: grey by its slope.
+fn solid_picture(material: SolidMaterial) -> Result<Vec<u8>, CliError> {
+    const PIXEL_M: f64 = 1.25e-4;
+    let size = 280;
+    let parameters = material.parameters();
+    let noise = SolidNoise::new(parameters, 1).map_err(CliError::from_error)?;
+    let height = |x: usize, y: usize| {
+        noise.definition(&parameters, SolidCut::SLANTED.at([x, y].map(|n| PIXEL_M * n as f64)))
+    };
+    let slope = |i: usize| height(i % size + 1, i / size) - height(i % size, i / size);
+    let slopes: Vec<f64> = (0..size * size).map(slope).collect();
+    let rms = (slopes.iter().map(|x| x * x).sum::<f64>() / slopes.len() as f64).sqrt();
+    let grey = slopes.iter().map(|x| (128.0 + 45.0 * x / rms).clamp(0.0, 255.0) as u8);
+    Ok(pixels::png8(size, size, &grey.collect::<Vec<u8>>()))
 }
 
 /// A periodic relief of 40 mm, heights 0–1.

@@ -228,8 +228,8 @@ impl Study {
             Protocol::Rating => "How much, from 0 to 100?",
             Protocol::Staircase => "Which of the two is stronger?",
         };
-        let consent = "This is a test of sounds and vibrations. It asks for no name and saves nothing but your \
-                       answers, their times and a random number.";
+        let consent =
+            "This is a test of sounds and vibrations. Nothing is saved but your answers and their times.";
         let instructions = "Listen with headphones; rest whenever you like.";
         for (text, default) in [
             (&mut self.question, question),

@@ -1,5 +1,5 @@
 //! Growth of a haptic channel with speed and force, over a flat plate with the default
-//! micro-relief.
+//! micro-relief; its level on any surface.
 
 use asperity::files::FileError;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
@@ -33,7 +33,9 @@ pub fn growth(probe: &str, quantity: Quantity, roughness: f64) -> Result<Growth,
     let mut levels = [[0.0; 3]; 3];
     for (row, speed_m_s) in levels.iter_mut().zip(SPEEDS_M_S) {
         for (level, force_n) in row.iter_mut().zip(FORCES_N) {
-            *level = rms(probe, quantity, roughness, speed_m_s, force_n)?;
+            let plate = Surface::flat(SIDE_M, SIDE_M).map_err(FileError::from_error)?;
+            let plate = plate.roughness(asperity::Roughness::Constant(roughness));
+            *level = rms(probe, quantity, (plate, SIDE_M), speed_m_s, force_n)?;
         }
     }
     let slope = |x: [f64; 3], of: &dyn Fn(usize) -> f64| {
@@ -52,11 +54,15 @@ pub fn growth(probe: &str, quantity: Quantity, roughness: f64) -> Result<Growth,
     })
 }
 
-/// Level of one stroke of a second after its first 0.2 s.
-fn rms(
+/// Root mean square of a channel in a stroke of a second along a surface of this side, m, after its
+/// first 0.2 s.
+///
+/// # Errors
+/// When the engine refuses the probe or the surface.
+pub fn rms(
     probe: &str,
     output: Quantity,
-    roughness: f64,
+    (surface, side_m): (Surface, f64),
     speed_m_s: f64,
     force_n: f64,
 ) -> Result<f64, FileError> {
@@ -64,12 +70,10 @@ fn rms(
     let actuators = vec![ActuatorSettings { full_scale: 1.0, output, ..ActuatorSettings::default() }];
     let config = Config { probe, actuators, ..Config::default() };
     let Engine { mut scene, renderer, .. } = config.build().map_err(FileError::from_error)?;
-    let surface = Surface::flat(SIDE_M, SIDE_M).map_err(FileError::from_error)?;
-    let surface = surface.roughness(asperity::Roughness::Constant(roughness));
     let id = scene.add_surface(surface).map_err(FileError::from_error)?;
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
     let sample = |t: f64| ContactSample {
-        uv: [0.1 + speed_m_s * t / SIDE_M, 0.525],
+        uv: [0.1 + speed_m_s * t / side_m, 0.525],
         velocity_m_s: Some([speed_m_s, 0.0]),
         normal_force_n: force_n,
         closing_m_s: 0.0,

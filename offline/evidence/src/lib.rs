@@ -21,8 +21,10 @@
 //! | [`observer`] | the frozen observer: plates told apart with a person's noise |
 //! | `sources` | figures and tables of the sources, computed again (feature `judges`) |
 //! | `abx`, `compare`, `likeness`, `plates` | surfaces told apart, and ordered, by strokes through the engine (feature `judges`) |
-//! | `growth` | how what is felt grows with speed and force (feature `judges`) |
+//! | `abrasive`, `growth` | what a tool feels of coated abrasives, and how what is felt grows with speed and force (feature `judges`) |
 
+#[cfg(feature = "judges")]
+pub mod abrasive;
 #[cfg(feature = "judges")]
 pub mod abx;
 pub mod coloured_noise;

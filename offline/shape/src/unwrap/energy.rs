@@ -13,7 +13,7 @@
 //! A large φ turns triangles over by itself: lengths know no side. Begun from mean coordinates on
 //! a circle of the surface's area; each step solves with the positive part of the second
 //! derivatives (of an edge by its two directions, of a triangle by Gauss and Newton) and is halved
-//! until E falls.
+//! until E falls, or goes half as far again while E falls on: where E is flat such steps are short.
 
 use super::{Sheet, Uv, det, smooth};
 use crate::error::ShapeError;
@@ -29,7 +29,7 @@ pub const PHI: f64 = 0.2;
 /// Most steps.
 const MOST_STEPS: usize = 80;
 /// Part of E by which a step lowers it when the search ends.
-const ENOUGH: f64 = 1e-6;
+const ENOUGH: f64 = 1e-5;
 
 struct Problem<'a> {
     sheet: &'a Sheet<'a>,
@@ -70,8 +70,20 @@ pub(super) fn solve(sheet: &Sheet<'_>, phi: f64) -> Result<(Vec<Uv>, f64), Shape
                 .map(|(i, uv)| [0, 1].map(|axis| uv[axis] - part * step[(2 * i + axis, 0)]))
                 .collect()
         };
-        let tried = (0..30).map(|halved| moved(0.5f64.powi(halved))).map(|uv| (problem.energy(&uv), uv));
-        let Some((lower, better)) = tried.into_iter().find(|(tried, _)| *tried < energy) else { break };
+        let tried = |part: f64| {
+            let uv = moved(part);
+            (part, problem.energy(&uv), uv)
+        };
+        let mut parts = (0..30).map(|halved| tried(0.5f64.powi(halved)));
+        let Some(mut best) = parts.find(|(_, tried, _)| *tried < energy) else { break };
+        while best.0 >= 1.0 {
+            let further = tried(1.5 * best.0);
+            if further.1 >= best.1 {
+                break;
+            }
+            best = further;
+        }
+        let (_, lower, better) = best;
         let done = energy - lower <= ENOUGH * energy;
         (energy, uv) = (lower, better);
         if done {
