@@ -15,7 +15,8 @@ use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{
-    GRID_SAMPLES, GroupOptions, Input, LANES, LaneGains, MAX_INPUTS, OnsetSamples, PhasorGroup, PhasorState,
+    GRID_SAMPLES, GroupOptions, Input, LANES, LaneGains, LaneSums, MAX_INPUTS, OnsetSamples, PhasorGroup,
+    PhasorState, total,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -250,19 +251,19 @@ impl PickupSlot {
 
     /// Reads what the modes answer to the inputs of the next `n` samples.
     fn ring(&mut self, kernel: Level, position: u64, inputs: &[Input<'_>], n: usize) {
-        let mut sum = [0.0; MAX_BLOCK];
+        let mut sums = [LaneSums::default(); MAX_BLOCK];
         let struck = inputs.iter().any(|input| input.impulses[..n].iter().any(|u| *u != 0.0));
         let at_grid = (position + n as u64).is_multiple_of(GRID_SAMPLES);
         for (index, (group, state)) in self.groups.iter_mut().enumerate() {
             if !struck && state.is_at_rest() {
                 continue;
             }
-            group.run(kernel, index, state, inputs, &mut sum[..n]);
+            group.run(kernel, index, state, inputs, &mut sums[..n]);
             if at_grid {
                 group.settle(state, self.rest);
             }
         }
-        self.out.iter_mut().zip(sum).for_each(|(out, sum)| *out = sum as f32);
+        self.out.iter_mut().zip(&sums[..n]).for_each(|(out, parts)| *out = total(parts) as f32);
     }
 
     /// Adds what it reads of a stretch.

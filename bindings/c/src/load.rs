@@ -1,10 +1,10 @@
 //! Load: an engine from a scene file, and the ids of what it names.
 
-use crate::pickup::ASP_MAX_PICKUPS;
 use crate::config::{ASP_MAX_CHANNELS, asp_config, hand_out, within};
 use crate::entry::{enter, out};
 use crate::files::{Given, asp_files};
 use crate::handles::{SCENES, SceneHalf, asp_renderer, asp_scene};
+use crate::pickup::ASP_MAX_PICKUPS;
 use crate::sized;
 use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_REFUSED, ASP_UNKNOWN, Failure};
 use crate::text;
@@ -45,7 +45,8 @@ pub unsafe extern "C" fn asp_load(
         let live = config.is_live()?;
         let counts = [config.haptic_channels, config.audio_buses, config.pickup_channels];
         if !config.more.is_null() || counts != [0; 3] {
-            let what = "config: more, haptic_channels, audio_buses and pickup_channels stand beside a scene file";
+            let what =
+                "config: more, haptic_channels, audio_buses and pickup_channels stand beside a scene file";
             return Err(Failure::new(ASP_REFUSED, format!("{what}; write them into the scene file")));
         }
         let failed = |error| Failure::new(ASP_FILE, error);

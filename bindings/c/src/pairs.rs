@@ -2,7 +2,7 @@
 
 use crate::body::refused;
 use crate::entry::{array, enter, out};
-use crate::handles::{PAIRS, Simulated, SCENES, asp_pairs, asp_scene};
+use crate::handles::{PAIRS, SCENES, Simulated, asp_pairs, asp_scene};
 use crate::material;
 use crate::report::refusal;
 use crate::sized::{self, sized};
