@@ -109,7 +109,8 @@ impl asp_config {
             config.audio.resize(count, AudioBus::default());
         }
         if self.pickup_channels != 0 {
-            config.pickups.resize(self.pickup_channels as usize, None);
+            let count = within("pickup_channels", self.pickup_channels as usize, ASP_MAX_PICKUPS)?;
+            config.pickups.resize(count, None);
         }
         within("pickups", config.pickups.len(), ASP_MAX_PICKUPS)?;
         config.kernel = self.isa()?.or(config.kernel);

@@ -146,8 +146,8 @@ pub unsafe extern "C" fn asp_collider_init(collider: *mut asp_collider) {
     sized::init(collider);
 }
 
-/// Makes an empty world of pairs for a scene, before its surfaces are added: what touches them rides
-/// them with probes of its own.
+/// Makes an empty world of pairs for a scene, before its surfaces are added: what touches them
+/// rides them with probes of its own.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_pairs_new(scene: *mut asp_scene, pairs: *mut *mut asp_pairs) -> i32 {
     enter(|| {
@@ -180,10 +180,10 @@ pub unsafe extern "C" fn asp_pairs_add(
     })
 }
 
-/// Takes a step of a simulator and reports to the scene, at game time `time_s`, what strikes, slides,
-/// rolls, rests and leaves: `placed` has an entry for each collider, `touches` one for each point of
-/// contact. Times grow; a step that is refused for its numbers was not taken. `events` (may be NULL)
-/// is how many were accepted, and the first refusal by the scene is the status.
+/// Takes a step of a simulator and reports to the scene, at game time `time_s`, what strikes,
+/// slides, rolls, rests and leaves: `placed` has an entry for each collider, `touches` one for each
+/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events` (may
+/// be NULL) is how many were accepted, and the first refusal by the scene is the status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_pairs_step(
     pairs: *mut asp_pairs,

@@ -121,20 +121,12 @@ pub unsafe extern "C" fn asp_pickup_motion(
     })
 }
 
-/// Channels of pickups of a renderer, and by how many samples what they read lags behind the stamps
-/// of its events.
+/// Number of a renderer's channels of pickups; they lag as sound does (`asp_signals`).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn asp_pickup_channels(
-    renderer: *mut asp_renderer,
-    channels: *mut u32,
-    latency_samples: *mut u32,
-) -> i32 {
+pub unsafe extern "C" fn asp_pickup_channels(renderer: *mut asp_renderer, channels: *mut u32) -> i32 {
     enter(|| {
-        let (channels, latency) = (out(channels, "channels")?, out(latency_samples, "latency_samples")?);
-        let half = RENDERERS.hold(renderer as usize)?;
-        let renderer = half.renderer.as_ref().ok_or_else(moved)?;
-        *channels = renderer.pickup_channels() as u32;
-        *latency = renderer.audio_latency_samples() as u32;
+        let (channels, half) = (out(channels, "channels")?, RENDERERS.hold(renderer as usize)?);
+        *channels = half.renderer.as_ref().ok_or_else(moved)?.pickup_channels() as u32;
         Ok(())
     })
 }

@@ -47,8 +47,8 @@ static void reads_a_tap(void) {
     put(scene, body, 0, ASP_PICKUP_ACCELERATION, 1.0);
     put(scene, body, 1, ASP_PICKUP_ACCELERATION, -0.5);
     put(scene, body, 2, ASP_PICKUP_VELOCITY, 1.0);
-    uint32_t channels, latency;
-    MUST(asp_pickup_channels(renderer, &channels, &latency) == ASP_OK && channels == CHANNELS);
+    uint32_t channels;
+    MUST(asp_pickup_channels(renderer, &channels) == ASP_OK && channels == CHANNELS);
     asp_event tap = asp_impact(body, 1.0, 0.004, 0.005);
     MUST(asp_report(scene, 0.0, &tap, 1, sizeof tap, NULL) == ASP_OK);
     render(renderer);

@@ -12,10 +12,10 @@ int main(int count, char **words) {
     asp_scene *scene;
     asp_renderer *renderer;
     MUST(asp_load(words[1], NULL, NULL, &config, &scene, &renderer) == ASP_OK);
-    uint32_t haptics, buses, pickups, latency, late, events_count;
+    uint32_t haptics, buses, pickups, latency, events_count;
     double rate_hz;
     MUST(asp_signals(renderer, &haptics, &buses, &rate_hz, &latency) == ASP_OK);
-    MUST(asp_pickup_channels(renderer, &pickups, &late) == ASP_OK && late >= latency);
+    MUST(asp_pickup_channels(renderer, &pickups) == ASP_OK);
 
     char *log = slurp(words[2], NULL);
     MUST(asp_read_log(scene, log, NULL, NULL, 0, sizeof(asp_event), &events_count) == ASP_OK && events_count > 0);
@@ -24,7 +24,7 @@ int main(int count, char **words) {
     MUST(asp_read_log(scene, log, events, times_s, events_count, sizeof *events, &events_count) == ASP_OK);
     free(log);
 
-    uint32_t frames = (uint32_t)ceil((times_s[events_count - 1] + atof(words[3])) * rate_hz), total = frames + late;
+    uint32_t frames = (uint32_t)ceil((times_s[events_count - 1] + atof(words[3])) * rate_hz), total = frames + latency;
     uint32_t signals = haptics + buses + pickups, block = (uint32_t)atoi(words[5]), done = 0, next = 0;
     float *samples = calloc((size_t)signals * total, sizeof *samples);
     MUST(signals <= 64 && block > 0);
@@ -45,7 +45,7 @@ int main(int count, char **words) {
         MUST(out);
         uint32_t first = file == 4 ? 0 : haptics + buses, end = file == 4 ? haptics + buses : signals;
         for (uint32_t i = first; i < end; i++)
-            MUST(fwrite(samples + (size_t)i * total + (file == 4 ? latency : late), sizeof *samples, frames, out) == frames);
+            MUST(fwrite(samples + (size_t)i * total + latency, sizeof *samples, frames, out) == frames);
         MUST(fclose(out) == 0);
     }
     asp_stats stats;
