@@ -916,8 +916,8 @@ int32_t asp_pairs_add(struct asp_pairs *pairs, const struct asp_collider *collid
 
 /// Takes a step of a simulator and reports to the scene, at game time `time_s`, what strikes,
 /// slides, rolls, rests and leaves: `placed` has an entry for each collider, `touches` one for each
-/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events` (may
-/// be NULL) is how many were accepted, and the first refusal by the scene is the status.
+/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events`
+/// (may be NULL) is how many were accepted, and the first refusal by the scene is the status.
 int32_t asp_pairs_step(struct asp_pairs *pairs,
                        struct asp_scene *scene,
                        double time_s,
@@ -942,8 +942,8 @@ int32_t asp_pickup_motion(struct asp_scene *scene, double time_s, uint64_t body,
 /// Number of a renderer's channels of pickups; they lag as sound does (`asp_signals`).
 int32_t asp_pickup_channels(struct asp_renderer *renderer, uint32_t *channels);
 
-/// `asp_render`, and what the pickups read of the same frames: channel i into `pickups[i]`, in m/s2,
-/// m/s or m, behind a sensor in volts.
+/// `asp_render`, and what the pickups read of the same frames: channel i into `pickups[i]`, in
+/// m/s2, m/s or m, behind a sensor in volts.
 void asp_pickup_render(struct asp_renderer *renderer,
                        float *const *haptic,
                        uint32_t haptic_channels,

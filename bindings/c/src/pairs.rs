@@ -182,8 +182,8 @@ pub unsafe extern "C" fn asp_pairs_add(
 
 /// Takes a step of a simulator and reports to the scene, at game time `time_s`, what strikes,
 /// slides, rolls, rests and leaves: `placed` has an entry for each collider, `touches` one for each
-/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events` (may
-/// be NULL) is how many were accepted, and the first refusal by the scene is the status.
+/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events`
+/// (may be NULL) is how many were accepted, and the first refusal by the scene is the status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_pairs_step(
     pairs: *mut asp_pairs,

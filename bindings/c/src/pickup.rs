@@ -131,8 +131,8 @@ pub unsafe extern "C" fn asp_pickup_channels(renderer: *mut asp_renderer, channe
     })
 }
 
-/// `asp_render`, and what the pickups read of the same frames: channel i into `pickups[i]`, in m/s²,
-/// m/s or m, behind a sensor in volts.
+/// `asp_render`, and what the pickups read of the same frames: channel i into `pickups[i]`, in
+/// m/s², m/s or m, behind a sensor in volts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_pickup_render(
     renderer: *mut asp_renderer,
