@@ -2,6 +2,7 @@
 //! levels of what is heard.
 
 use crate::closed_forms;
+use crate::counting::held_bytes;
 
 use asperity::{
     Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel, Mode,
@@ -254,6 +255,24 @@ fn a_body_that_no_bus_hears_is_read_as_one_that_sounds() {
     let heard = readings(1);
     assert!(heard[8000..12_000].iter().any(|x| x.abs() > 1e-3));
     assert!(readings(0) == heard);
+}
+
+#[test]
+fn a_body_without_pickups_holds_nothing_for_those_of_others() {
+    let plate = |listened: bool| {
+        let plain = Body::new(plate_body());
+        if listened { plain.pickup(up([0.1, 0.1, 0.0])) } else { plain }
+    };
+    let held = |channels: usize, beside: bool, own: bool| {
+        let mut engine = config(channels).build().unwrap();
+        engine.scene.add_body(plate(beside)).unwrap();
+        let (body, before) = (plate(own), held_bytes());
+        engine.scene.add_body(body).unwrap();
+        held_bytes() - before
+    };
+    let [alone, beside, listened] = [(0, false, false), (1, true, false), (1, true, true)]
+        .map(|(channels, beside, own)| held(channels, beside, own));
+    assert!(beside == alone && listened != alone, "{alone} {beside} {listened}");
 }
 
 #[test]

@@ -15,7 +15,7 @@
 //! both. Products and sums round apart, in one order: the bits are those of every processor.
 
 use super::LANES;
-use super::design::{GRID_SAMPLES, GroupOptions, Pole};
+use super::design::{GroupOptions, Pole};
 use super::job::Input;
 use crate::DesignError;
 use crate::mode::Mode;
@@ -28,8 +28,9 @@ type Row = [f64; LANES];
 
 /// Lanes that go together: with their coefficients, as many as there are registers for.
 const WIDE: usize = 8;
-/// Samples at a time.
-const CHUNK: usize = GRID_SAMPLES as usize;
+/// Samples at a time: a stretch is mostly shorter than a cell of the grid, and what is not heard of
+/// a chunk has to be emptied too.
+const CHUNK: usize = 16;
 
 /// Output of a sample in parts, which are added up once for all groups ([`total`]).
 pub type LaneSums = [f64; WIDE];
