@@ -152,6 +152,7 @@ mod tests {
     use super::*;
     use crate::modal_bank::LaneGains;
     use crate::rng::Rng;
+    use std::{vec, vec::Vec};
 
     /// Outputs of eleven modes that two inputs drive, in blocks of such a length.
     fn outputs(level: Level, block: usize) -> Vec<f64> {
