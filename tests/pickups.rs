@@ -2,6 +2,7 @@
 //! levels of what is heard.
 
 use crate::closed_forms;
+use crate::counting::held_bytes;
 
 use asperity::{
     Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel, Mode,
@@ -221,6 +222,57 @@ fn readings_do_not_depend_on_blocks_or_levels_and_leave_the_sound_alone() {
         audio
     };
     assert!(heard(plain) == heard(Body::new(plate_body())));
+}
+
+#[test]
+fn a_body_that_no_bus_hears_is_read_as_one_that_sounds() {
+    let readings = |buses: usize| {
+        let config = Config { audio: vec![Default::default(); buses], ..config(1) };
+        let mut engine = config.build().unwrap();
+        let body = Body::new(plate_body()).pickup(up([0.1, 0.1, 0.0]));
+        let body = engine.scene.add_body(body).unwrap();
+        engine.scene.report(0.0, tap(body, [0.2, 0.13, 0.0])).unwrap();
+        let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+        let surface = Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().frame(frame).body(body);
+        let surface = engine.scene.add_surface(surface).unwrap();
+        for step in 0..12 {
+            let t = f64::from(step) / 60.0;
+            let sample = ContactSample::new([0.2 + t, 0.4], 0.5).sliding([PLATE_M[0], 0.0]);
+            let event = match step {
+                0 => ContactEvent::begin_with(ContactId(1), Touching::on(surface), sample),
+                11 => ContactEvent::end(ContactId(1)),
+                _ => ContactEvent::moved(ContactId(1), sample),
+            };
+            engine.scene.report(0.1 + t, event).unwrap();
+        }
+        assert_eq!(engine.renderer.audio_buses(), buses);
+        // Taken away while it rings, and until nothing rings.
+        let mut all = read(&mut engine, 1, 20_000, 512).remove(0);
+        engine.scene.remove_body(body).unwrap();
+        all.extend(read(&mut engine, 1, 2 * 44_100, 512).remove(0));
+        all
+    };
+    let heard = readings(1);
+    assert!(heard[8000..12_000].iter().any(|x| x.abs() > 1e-3));
+    assert!(readings(0) == heard);
+}
+
+#[test]
+fn a_body_without_pickups_holds_nothing_for_those_of_others() {
+    let plate = |listened: bool| {
+        let plain = Body::new(plate_body());
+        if listened { plain.pickup(up([0.1, 0.1, 0.0])) } else { plain }
+    };
+    let held = |channels: usize, beside: bool, own: bool| {
+        let mut engine = config(channels).build().unwrap();
+        engine.scene.add_body(plate(beside)).unwrap();
+        let (body, before) = (plate(own), held_bytes());
+        engine.scene.add_body(body).unwrap();
+        held_bytes() - before
+    };
+    let [alone, beside, listened] = [(0, false, false), (1, true, false), (1, true, true)]
+        .map(|(channels, beside, own)| held(channels, beside, own));
+    assert!(beside == alone && listened != alone, "{alone} {beside} {listened}");
 }
 
 #[test]

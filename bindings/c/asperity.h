@@ -6,7 +6,7 @@
  * asp_..._init first. Ids are numbers that are never 0; 0 means none. A scene belongs to one thread at a time, a renderer to one (the
  * audio thread), a port to one; any of them may be freed while others live. Texts are UTF-8 and copied.
  *
- * The audio thread may call asp_render, asp_render_interleaved, asp_report_load and the asp_port_... that read: they never fail,
+ * The audio thread may call asp_render, asp_pickup_render, asp_render_interleaved, asp_report_load and the asp_port_... that read: they never fail,
  * allocate, lock or wait.
  */
 
@@ -171,6 +171,33 @@
 /// A striker whose elastic constants stand in the event.
 #define ASP_MATERIAL_CUSTOM 255
 
+/// Form of a collider that does not roll.
+#define ASP_FORM_FLAT 0
+
+/// Sphere.
+#define ASP_FORM_SPHERE 1
+
+/// Capsule along its own z.
+#define ASP_FORM_CAPSULE 2
+
+/// Cylinder along its own z.
+#define ASP_FORM_CYLINDER 3
+
+/// Most colliders of a world.
+#define ASP_MAX_COLLIDERS 65536
+
+/// A pickup reads m/s2, with what the body does as a whole.
+#define ASP_PICKUP_ACCELERATION 0
+
+/// A pickup reads m/s, of the vibration.
+#define ASP_PICKUP_VELOCITY 1
+
+/// A pickup reads m, of the vibration.
+#define ASP_PICKUP_DISPLACEMENT 2
+
+/// Most channels of pickups of an engine that is built or loaded here.
+#define ASP_MAX_PICKUPS 64
+
 /// Samples, exactly as they leave: read with `asp_port_pcm`.
 #define ASP_PORT_PCM 1
 
@@ -269,7 +296,10 @@
 #define ASP_ABI 1
 
 /// Number of structs in the header, in the order in which `asp_check_abi` takes their sizes.
-#define ASP_STRUCTS 13
+#define ASP_STRUCTS 18
+
+/// Colliders of a simulated world, and what pairs of them do.
+typedef struct asp_pairs asp_pairs;
 
 /// An engine that plays on a sound card.
 typedef struct asp_player asp_player;
@@ -373,8 +403,9 @@ typedef struct asp_config {
     uint32_t audio_buses;
     /// ASP_KERNEL_...
     uint32_t kernel;
-    /// 0.
-    uint32_t reserved;
+    /// Channels of pickups in SI units, 1 to 64; 0 = as `more` or the scene file says, else none.
+    /// (Since 0.1.6; before, a 0 that was reserved.)
+    uint32_t pickup_channels;
     /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's
     /// defaults. The fields above count more. Not beside a scene file, which says these things
     /// itself.
@@ -464,6 +495,86 @@ typedef struct asp_image {
     /// 1 grey, 2 grey and alpha, 3 red, green and blue, 4 the same and alpha.
     uint32_t channels;
 } asp_image;
+
+/// A collider for its whole life; `asp_collider_init` fills it.
+typedef struct asp_collider {
+    /// Size of this struct, bytes.
+    uint32_t struct_size;
+    /// Material: ASP_MATERIAL_...
+    uint32_t material;
+    /// ASP_FORM_...
+    uint32_t form;
+    /// The haptic channel that feels it; -1 = nobody.
+    int32_t actuator;
+    /// Body that it rings as; 0 = none.
+    uint64_t body;
+    /// Surface that others scrape on it; 0 = none.
+    uint64_t surface;
+    /// Width and height of that surface, m.
+    double surface_m[2];
+    /// Mass, kg; INFINITY for what nothing moves.
+    double mass_kg;
+    /// Radius of a sphere or a capsule, m.
+    double radius_m;
+} asp_collider;
+
+/// Place and motion of a collider after a step.
+typedef struct asp_placed {
+    /// Origin of its own space, m.
+    double place_m[3];
+    /// Turn from its own space to the world's, row by row.
+    double rotation[9];
+    /// Velocity of that origin, m/s.
+    double velocity_m_s[3];
+    /// rad/s.
+    double angular_velocity_rad_s[3];
+} asp_placed;
+
+/// A point at which two colliders press.
+typedef struct asp_touch {
+    /// The two, by the order in which they were added.
+    uint32_t colliders[2];
+    /// Place, m.
+    double point_m[3];
+    /// Direction from the first to the second.
+    double normal[3];
+    /// Along the normal, N.
+    double force_n;
+    /// Rebound over approach speed, 0 to 1.
+    double restitution;
+} asp_touch;
+
+/// A pickup; `asp_pickup_init` fills it.
+typedef struct asp_pickup {
+    /// Size of this struct, bytes.
+    uint32_t struct_size;
+    /// Channel that it is read on, from 0; those of one channel add up.
+    uint32_t channel;
+    /// ASP_PICKUP_...
+    uint32_t quantity;
+    /// 0.
+    uint32_t reserved;
+    /// Place on a body that has shapes, m in its frame, at most 1 % of its size off its surface; on
+    /// another the arm of its rigid motion. NAN = none.
+    double at_m[3];
+    /// Along what it reads, in the body's frame; NAN = the outward normal.
+    double direction[3];
+    /// On a body of known mass without shapes, how much it moves with every mode, -1 to 1: 1 as
+    /// where that swings most. NAN = at a place.
+    double factor;
+} asp_pickup;
+
+/// Motion of a body as a whole at an instant, in its own axes.
+typedef struct asp_motion {
+    /// Acceleration of its centre, m/s2.
+    double acceleration_m_s2[3];
+    /// Gravity, m/s2.
+    double gravity_m_s2[3];
+    /// rad/s.
+    double angular_velocity_rad_s[3];
+    /// Centre that the acceleration belongs to, m.
+    double centre_m[3];
+} asp_motion;
 
 /// Settings of a player; `asp_player_config_init` fills it for the default device.
 typedef struct asp_player_config {
@@ -735,6 +846,9 @@ int32_t asp_renderer_free(struct asp_renderer *renderer);
 /// Frees a tip; null is nothing. It ends no contact: report the end of what it touches.
 int32_t asp_tip_free(struct asp_tip *tip);
 
+/// Frees a world of pairs; null is nothing. It ends no contact.
+int32_t asp_pairs_free(struct asp_pairs *pairs);
+
 /// Closes a port; null is nothing.
 int32_t asp_port_free(struct asp_port *port);
 
@@ -788,6 +902,56 @@ int32_t asp_read_log(struct asp_scene *scene,
 
 /// The number of a material, by the name that scene files use: "steel", "wood", ...
 int32_t asp_material(const char *name, uint32_t *number);
+
+/// Fills a collider with its size and the defaults: it rings as nothing, has no surface, and
+/// nothing moves it.
+void asp_collider_init(struct asp_collider *collider);
+
+/// Makes an empty world of pairs for a scene, before its surfaces are added: what touches them
+/// rides them with probes of its own.
+int32_t asp_pairs_new(struct asp_scene *scene, struct asp_pairs **pairs);
+
+/// Adds a collider; `index` is its number in `asp_touch` and its place among `asp_placed`.
+int32_t asp_pairs_add(struct asp_pairs *pairs, const struct asp_collider *collider, uint32_t *index);
+
+/// Takes a step of a simulator and reports to the scene, at game time `time_s`, what strikes,
+/// slides, rolls, rests and leaves: `placed` has an entry for each collider, `touches` one for each
+/// point of contact. Times grow; a step that is refused for its numbers was not taken. `events`
+/// (may be NULL) is how many were accepted, and the first refusal by the scene is the status.
+int32_t asp_pairs_step(struct asp_pairs *pairs,
+                       struct asp_scene *scene,
+                       double time_s,
+                       double step_s,
+                       const struct asp_placed *placed,
+                       const struct asp_touch *touches,
+                       uint32_t count,
+                       uint32_t *events);
+
+/// Fills a pickup with its size and the defaults: the acceleration along the outward normal, on
+/// channel 0, at a place that has to be told, or with a factor.
+void asp_pickup_init(struct asp_pickup *pickup);
+
+/// Puts a pickup on a body; `asp_config.pickup_channels` says how many channels there are. What the
+/// body rings rings out unread.
+int32_t asp_pickup_add(struct asp_scene *scene, uint64_t body, const struct asp_pickup *pickup);
+
+/// Reports at game time `time_s` how a body moves as a whole: its accelerometers read it from then
+/// on.
+int32_t asp_pickup_motion(struct asp_scene *scene, double time_s, uint64_t body, const struct asp_motion *motion);
+
+/// Number of a renderer's channels of pickups; they lag as sound does (`asp_signals`).
+int32_t asp_pickup_channels(struct asp_renderer *renderer, uint32_t *channels);
+
+/// `asp_render`, and what the pickups read of the same frames: channel i into `pickups[i]`, in
+/// m/s2, m/s or m, behind a sensor in volts.
+void asp_pickup_render(struct asp_renderer *renderer,
+                       float *const *haptic,
+                       uint32_t haptic_channels,
+                       float *const *audio,
+                       uint32_t audio_buses,
+                       float *const *pickups,
+                       uint32_t pickup_channels,
+                       uint32_t frames);
 
 /// Fills a player's config with its size and the defaults.
 void asp_player_config_init(struct asp_player_config *config);
@@ -990,9 +1154,9 @@ uint32_t asp_version(void);
 
 /// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
-/// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
-/// where a library lies beside another one's header; structs of an older header of this interface
-/// are understood.
+/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider, placed,
+/// touch. One sentence instead of a crash where a library lies beside another one's header; structs
+/// of an older header of this interface are understood.
 int32_t asp_check_abi(uint32_t abi, const uint32_t *sizes, uint32_t count);
 
 #ifdef __cplusplus
@@ -1079,7 +1243,9 @@ static inline int32_t asp_check(void) {
         (uint32_t)sizeof(struct asp_event),       (uint32_t)sizeof(struct asp_stats),
         (uint32_t)sizeof(struct asp_port_config), (uint32_t)sizeof(struct asp_point),
         (uint32_t)sizeof(struct asp_force),       (uint32_t)sizeof(struct asp_player_config),
-        (uint32_t)sizeof(struct asp_player_report)};
+        (uint32_t)sizeof(struct asp_player_report), (uint32_t)sizeof(struct asp_pickup),
+        (uint32_t)sizeof(struct asp_motion),      (uint32_t)sizeof(struct asp_collider),
+        (uint32_t)sizeof(struct asp_placed),      (uint32_t)sizeof(struct asp_touch)};
     return asp_check_abi(ASP_ABI, sizes, ASP_STRUCTS);
 }
 

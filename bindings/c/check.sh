@@ -59,7 +59,7 @@ found="$(pkg-config --cflags asperity)" libs="$(pkg-config --libs asperity) -lm 
 {
     gcc -std=c99 -pedantic $strict $found example/stroke.c -o "$work/stroke" $libs
     g++ -std=c++17 -pedantic $strict $found example/stroke.cpp -o "$work/stroke_cpp" $libs
-    for program in replay hostile fuzz; do
+    for program in replay hostile fuzz pickup; do
         gcc -std=c99 -pedantic $strict $found tests/$program.c -o "$work/$program" $libs
     done
     shown README.md c >"$work/readme.c"
@@ -82,15 +82,18 @@ program="${ASPERITY:-$target/release/asperity}"
 [ -x "$program" ] || (cd "$root" && cargo build --release -q -p asperity-cli)
 "$program" render tests/replay.toml -o "$work/reference" >/dev/null 2>&1
 for block in 1 64 333 4096; do
-    "$work/replay" tests/replay.toml tests/replay.jsonl 0.5 "$work/replay.f32" "$block"
-    python3 tests/same_bits.py "$work/reference" "$work/replay.f32"
+    "$work/replay" tests/replay.toml tests/replay.jsonl 0.5 "$work/replay.f32" "$block" "$work/pickup.f32"
+    python3 tests/same_bits.py "$work/reference" "$work/replay.f32" haptic audio
+    python3 tests/same_bits.py "$work/reference" "$work/pickup.f32" pickup
 done
-ok "a replayed log equals \`asperity render\` to the bit, in blocks of 1, 64, 333 and 4096"
+ok "a replayed log and what a pickup reads of it equal \`asperity render\` to the bit, in blocks of 1, 64, 333 and 4096"
 
 LD_PRELOAD="$work/malloc_counter.so" "$work/audio_thread"
 ok "nothing is allocated or freed on the audio thread"
 "$work/hostile"
 ok "hostile calls"
+"$work/pickup"
+ok "pickups of a tap, of a body's own motion and of pairs of colliders"
 "$work/older"
 ok "a program that was compiled with an older header"
 if [ -f /usr/include/openxr/openxr.h ]; then
@@ -159,11 +162,12 @@ ok "more random calls"
 
 # The address sanitizer in the programs, and in every allocation of the library: what it frees twice, leaks or gives back too late.
 # shellcheck disable=SC2086
-for program in hostile fuzz replay; do
+for program in hostile fuzz replay pickup; do
     gcc -std=c99 $strict -fsanitize=address,undefined $found tests/$program.c "$lib/libasperity.a" -o "$work/${program}_asan" -lm -lpthread -ldl
 done
 sanitized() {
     "$work/hostile_asan"
+    "$work/pickup_asan"
     "$work/torture_asan" 400
     "$work/fuzz_asan" "$1" "$2"
     "$work/replay_asan" tests/replay.toml tests/replay.jsonl 0.5 "$work/asan.f32" 512

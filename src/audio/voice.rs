@@ -337,7 +337,9 @@ impl Voice {
         self.exciters.run(&by, heard, force_n_s, out);
         self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(slot, points, rows, &mut out.rub);
-        self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
+        if out.rub.rubs {
+            self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
+        }
     }
 
     /// State in which the stretch leaves the contact.

@@ -55,7 +55,8 @@ pub struct Config {
     /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
     /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By
-    /// default one with gain 1, without limiter.
+    /// default one with gain 1, without limiter. With none nothing sounds, and a body that is only
+    /// listened to by pickups costs less.
     pub audio: Vec<AudioBus>,
     /// Channels of [pickups](crate::Pickup), each read by a sensor, or in SI units; by default
     /// none.
@@ -224,7 +225,7 @@ impl Config {
         };
         count("oversampling", self.oversampling, MAX_OVERSAMPLING, "1–16 inner samples a sample")?;
         count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
-        count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
+        count("audio", self.audio.len().max(1), MAX_BUSES, "0–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
         count("max_probes", self.max_probes, 4096, "1–4096 probes")?;
         count("max_ports", self.max_ports, 4096, "1–4096 ports")?;

@@ -71,6 +71,8 @@ pub(crate) struct RenderArgs {
     pub(crate) position: u64,
     /// Number of the [`MODE_LEVELS`] that are left out because blocks run late.
     pub(crate) mode_level: usize,
+    /// False where no bus is there to hear it: then only its pickups ring.
+    pub(crate) heard: bool,
 }
 
 impl BodySlot {
@@ -139,7 +141,7 @@ impl BodySlot {
                 };
                 let placed: Vec<_> = pickups.iter().map(gains).collect();
                 let of = (plain.as_slice(), &units[..]);
-                Some(Box::new(Pickups::new(&placed, of, MOST_INPUTS, sample_rate_hz)?))
+                Some(Box::new(Pickups::new(&placed, of, MOST_INPUTS, (kernel, sample_rate_hz))?))
             }
             _ => None,
         };

@@ -15,9 +15,11 @@ use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{
-    GRID_SAMPLES, GroupOptions, Input, LANES, LaneGains, MAX_INPUTS, OnsetSamples, PhasorGroup, PhasorState,
+    GRID_SAMPLES, GroupOptions, Input, LANES, LaneGains, LaneSums, MAX_INPUTS, OnsetSamples, PhasorGroup,
+    PhasorState, total,
 };
 use asperity_dsp::mode::Mode;
+use asperity_dsp::simd::Level;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Amplitude below which a mode of a pickup rests, m: a thousandth of an atom's width at 1 kHz is
@@ -39,6 +41,7 @@ pub(crate) struct Pickups {
     all: Box<[PickupSlot]>,
     /// Impulses of strikes without the gain that they are heard with.
     plain: Box<[[f32; MAX_BLOCK]]>,
+    kernel: Level,
 }
 
 /// One pickup.
@@ -82,13 +85,13 @@ impl Pickups {
         placed: &[(PlacedPickup, Vec<LaneGains>)],
         (modes, units): (&[Mode], &[f64]),
         most_inputs: usize,
-        sample_rate_hz: f64,
+        (kernel, sample_rate_hz): (Level, f64),
     ) -> Result<Self, DesignError> {
         let slot = |(placed, gains): &(PlacedPickup, Vec<LaneGains>)| {
             PickupSlot::new(placed, gains, (modes, units), sample_rate_hz)
         };
         let all = placed.iter().map(slot).collect::<Result<_, _>>()?;
-        Ok(Self { all, plain: vec![[0.0; MAX_BLOCK]; most_inputs].into() })
+        Ok(Self { all, plain: vec![[0.0; MAX_BLOCK]; most_inputs].into(), kernel })
     }
 
     pub(crate) fn slots(&mut self) -> &mut [PickupSlot] {
@@ -141,7 +144,7 @@ impl Pickups {
         strike_gain: f64,
         heard: impl Iterator<Item = Heard<'a>>,
     ) {
-        let Self { all, plain } = self;
+        let Self { all, plain, kernel } = self;
         let back = if strike_gain == 0.0 { 0.0 } else { (1.0 / strike_gain - 1.0) as f32 };
         let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
         let mut count = 0;
@@ -157,7 +160,7 @@ impl Pickups {
             count += 1;
         }
         for slot in all {
-            slot.ring(position, &inputs[..count], n);
+            slot.ring(*kernel, position, &inputs[..count], n);
             let out = &mut slot.out[..n];
             if !slot.early.is_empty(position) {
                 let mut next = slot.early.drain(position);
@@ -247,20 +250,20 @@ impl PickupSlot {
     }
 
     /// Reads what the modes answer to the inputs of the next `n` samples.
-    fn ring(&mut self, position: u64, inputs: &[Input<'_>], n: usize) {
-        let mut sum = [0.0; MAX_BLOCK];
+    fn ring(&mut self, kernel: Level, position: u64, inputs: &[Input<'_>], n: usize) {
+        let mut sums = [LaneSums::default(); MAX_BLOCK];
         let struck = inputs.iter().any(|input| input.impulses[..n].iter().any(|u| *u != 0.0));
         let at_grid = (position + n as u64).is_multiple_of(GRID_SAMPLES);
         for (index, (group, state)) in self.groups.iter_mut().enumerate() {
             if !struck && state.is_at_rest() {
                 continue;
             }
-            group.run(index, state, inputs, &mut sum[..n]);
+            group.run(kernel, index, state, inputs, &mut sums[..n]);
             if at_grid {
                 group.settle(state, self.rest);
             }
         }
-        self.out.iter_mut().zip(sum).for_each(|(out, sum)| *out = sum as f32);
+        self.out.iter_mut().zip(&sums[..n]).for_each(|(out, parts)| *out = total(parts) as f32);
     }
 
     /// Adds what it reads of a stretch.

@@ -2,6 +2,7 @@
 
 use crate::entry::{enter, out};
 use crate::handles::{AudioHalf, RENDERERS, SCENES, SceneHalf, asp_renderer, asp_scene};
+use crate::pickup::{self, ASP_MAX_PICKUPS};
 use crate::sized::{self, sized};
 use crate::status::{ASP_REFUSED, Failure};
 use crate::text;
@@ -47,8 +48,9 @@ pub struct asp_config {
     pub audio_buses: u32,
     /// ASP_KERNEL_…
     pub kernel: u32,
-    /// 0.
-    pub reserved: u32,
+    /// Channels of pickups in SI units, 1 to 64; 0 = as `more` or the scene file says, else none.
+    /// (Since 0.1.6; before, a 0 that was reserved.)
+    pub pickup_channels: u32,
     /// Everything else as TOML or JSON, for instance "max_contacts = 128"; NULL = the engine's
     /// defaults. The fields above count more. Not beside a scene file, which says these things
     /// itself.
@@ -63,7 +65,7 @@ sized!(asp_config, "asp_config", |struct_size| Self {
     haptic_channels: 0,
     audio_buses: 0,
     kernel: ASP_KERNEL_BEST,
-    reserved: 0,
+    pickup_channels: 0,
     more: std::ptr::null(),
 });
 
@@ -106,6 +108,11 @@ impl asp_config {
             let count = within("audio_buses", self.audio_buses as usize, ASP_MAX_BUSES)?;
             config.audio.resize(count, AudioBus::default());
         }
+        if self.pickup_channels != 0 {
+            let count = within("pickup_channels", self.pickup_channels as usize, ASP_MAX_PICKUPS)?;
+            config.pickups.resize(count, None);
+        }
+        within("pickups", config.pickups.len(), ASP_MAX_PICKUPS)?;
         config.kernel = self.isa()?.or(config.kernel);
         within("actuators", config.actuators.len(), ASP_MAX_CHANNELS)?;
         Ok(config)
@@ -147,7 +154,9 @@ pub(crate) fn hand_out(
 ) -> Result<(), Failure> {
     let memory = |count: usize| vec![vec![0.0; CHUNK_FRAMES]; count];
     let (haptic, audio) = (memory(renderer.haptic_channels()), memory(renderer.audio_buses()));
-    let audio = RENDERERS.insert(AudioHalf { renderer: Some(renderer), haptic, audio, tick: None })?;
+    let pickups = pickup::memory(&renderer);
+    let audio =
+        RENDERERS.insert(AudioHalf { renderer: Some(renderer), haptic, audio, pickups, tick: None })?;
     match SCENES.insert(half) {
         Ok(handle) => {
             (*scene, *place) = (handle as *mut asp_scene, audio as *mut asp_renderer);

@@ -2,7 +2,7 @@
 //! be told.
 //!
 //! ```text
-//! handle = (generation xor copy) · 2¹³ + place · 2³ + kind        place < 1024, kind 1…5
+//! handle = (generation xor copy) · 2¹³ + place · 2³ + kind        place < 1024, kind 1…6
 //! ```
 //!
 //! A place's generation grows each time it is used again, so a handle that was freed never names

@@ -1,4 +1,5 @@
-//! Handles: what a program holds of a scene, a renderer, a port, a player and a tip.
+//! Handles: what a program holds of a scene, a renderer, a port, a player, a tip and a world of
+//! pairs.
 
 use crate::entry::enter;
 use crate::handle::Table;
@@ -7,6 +8,7 @@ use asperity::files::contact_log::Names;
 use asperity::live::ports::{ForcePort, LevelsPort, PcmPort, PointsPort};
 use asperity::surface::sand::SandThread;
 use asperity::{Renderer, Scene, SurfaceId, Tip};
+use asperity_pairs::{Collider, Probes, World};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The game's half of an engine: takes bodies, surfaces and events. One thread at a time.
@@ -34,6 +36,11 @@ pub struct asp_tip {
     _private: [u8; 0],
 }
 
+/// Colliders of a simulated world, and what pairs of them do.
+pub struct asp_pairs {
+    _private: [u8; 0],
+}
+
 /// Scene behind a handle.
 pub(crate) struct SceneHalf {
     pub(crate) scene: Scene,
@@ -58,6 +65,7 @@ pub(crate) struct AudioHalf {
     pub(crate) renderer: Option<Renderer>,
     pub(crate) haptic: Vec<Vec<f32>>,
     pub(crate) audio: Vec<Vec<f32>>,
+    pub(crate) pickups: Vec<Vec<f32>>,
     /// The tick of a mixer that was rendered last, so that two effects do not render one engine
     /// twice.
     pub(crate) tick: Option<u64>,
@@ -78,11 +86,21 @@ pub(crate) struct TrackedTip {
     pub(crate) surfaces: Vec<SurfaceId>,
 }
 
+/// World of pairs behind a handle.
+pub(crate) struct Simulated {
+    pub(crate) world: World,
+    pub(crate) probes: Probes,
+    pub(crate) colliders: Vec<Option<Collider>>,
+    /// Time of its last step.
+    pub(crate) last_s: Option<f64>,
+}
+
 pub(crate) static SCENES: Table<SceneHalf> = Table::new(1, "scene");
 pub(crate) static RENDERERS: Table<AudioHalf> = Table::new(2, "renderer");
 pub(crate) static PORTS: Table<AnyPort> = Table::new(3, "port");
 pub(crate) static PLAYERS: Table<Player> = Table::new(4, "player");
 pub(crate) static TIPS: Table<TrackedTip> = Table::new(5, "tip");
+pub(crate) static PAIRS: Table<Simulated> = Table::new(6, "pairs");
 
 /// Frees what a handle names; what it leaves in a fault is not freed.
 fn free<T: Send>(table: &Table<T>, handle: usize) -> i32 {
@@ -114,6 +132,12 @@ pub extern "C" fn asp_renderer_free(renderer: *mut asp_renderer) -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_tip_free(tip: *mut asp_tip) -> i32 {
     free(&TIPS, tip as usize)
+}
+
+/// Frees a world of pairs; null is nothing. It ends no contact.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_pairs_free(pairs: *mut asp_pairs) -> i32 {
+    free(&PAIRS, pairs as usize)
 }
 
 /// Closes a port; null is nothing.

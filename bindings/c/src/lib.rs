@@ -1,4 +1,4 @@
-//! The C interface: every function of `asperity.h`, a handful of flat structs, five kinds of
+//! The C interface: every function of `asperity.h`, a handful of flat structs, six kinds of
 //! handles.
 //!
 //! | rule | how it is kept |
@@ -32,6 +32,8 @@ pub mod levels;
 pub mod load;
 pub mod log;
 pub mod material;
+pub mod pairs;
+pub mod pickup;
 pub mod player;
 mod playing;
 pub mod port;

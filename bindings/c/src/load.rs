@@ -4,6 +4,7 @@ use crate::config::{ASP_MAX_CHANNELS, asp_config, hand_out, within};
 use crate::entry::{enter, out};
 use crate::files::{Given, asp_files};
 use crate::handles::{SCENES, SceneHalf, asp_renderer, asp_scene};
+use crate::pickup::ASP_MAX_PICKUPS;
 use crate::sized;
 use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_REFUSED, ASP_UNKNOWN, Failure};
 use crate::text;
@@ -42,8 +43,10 @@ pub unsafe extern "C" fn asp_load(
         let path = Path::new(text::needed(path, "path")?);
         let given = Given::new(files)?;
         let live = config.is_live()?;
-        if !config.more.is_null() || config.haptic_channels != 0 || config.audio_buses != 0 {
-            let what = "config: more, haptic_channels and audio_buses stand beside a scene file";
+        let counts = [config.haptic_channels, config.audio_buses, config.pickup_channels];
+        if !config.more.is_null() || counts != [0; 3] {
+            let what =
+                "config: more, haptic_channels, audio_buses and pickup_channels stand beside a scene file";
             return Err(Failure::new(ASP_REFUSED, format!("{what}; write them into the scene file")));
         }
         let failed = |error| Failure::new(ASP_FILE, error);
@@ -53,6 +56,7 @@ pub unsafe extern "C" fn asp_load(
         }
         .map_err(failed)?;
         within("actuators", file.actuators.len(), ASP_MAX_CHANNELS)?;
+        within("pickups", file.pickups.len(), ASP_MAX_PICKUPS)?;
         let overrides = Overrides {
             files: &given,
             sample_rate_hz: Some(config.sample_rate_hz).filter(|rate_hz| *rate_hz != 0.0),

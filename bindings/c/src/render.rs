@@ -4,6 +4,7 @@
 use crate::config::{ASP_MAX_BUSES, ASP_MAX_CHANNELS, CHUNK_FRAMES};
 use crate::entry::{enter, out};
 use crate::handles::{AudioHalf, RENDERERS, SCENES, asp_renderer, asp_scene};
+use crate::pickup::ASP_MAX_PICKUPS;
 use crate::status::{ASP_REFUSED, Failure};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -29,10 +30,16 @@ impl AudioHalf {
         for (slice, bus) in audio.iter_mut().zip(&mut self.audio) {
             *slice = &mut bus[..frames];
         }
+        let mut pickups: [&mut [f32]; ASP_MAX_PICKUPS as usize] = std::array::from_fn(|_| &mut [][..]);
+        let read = self.pickups.len().min(pickups.len());
+        for (slice, pickup) in pickups.iter_mut().zip(&mut self.pickups) {
+            *slice = &mut pickup[..frames];
+        }
         if let Some(renderer) = &mut self.renderer {
-            renderer.render(&mut haptic[..channels], &mut audio[..buses]);
+            let (haptic, audio) = (&mut haptic[..channels], &mut audio[..buses]);
+            renderer.render_with_pickups(haptic, audio, &mut pickups[..read]);
         } else {
-            haptic.iter_mut().chain(&mut audio).for_each(|slice| slice.fill(0.0));
+            haptic.iter_mut().chain(&mut audio).chain(&mut pickups).for_each(|slice| slice.fill(0.0));
         }
     }
 
@@ -55,13 +62,13 @@ pub(crate) fn guarded(render: impl FnOnce()) {
 
 /// A program's planar channels; which of its pointers are null does not matter.
 #[derive(Clone, Copy)]
-struct Planes {
+pub(crate) struct Planes {
     first: *const *mut f32,
     count: usize,
 }
 
 impl Planes {
-    fn new(first: *const *mut f32, count: u32) -> Self {
+    pub(crate) fn new(first: *const *mut f32, count: u32) -> Self {
         let count = if first.is_null() || !first.is_aligned() { 0 } else { count as usize };
         Self { first, count }
     }
@@ -96,10 +103,18 @@ pub unsafe extern "C" fn asp_render(
     audio_buses: u32,
     frames: u32,
 ) {
-    if haptic_channels > ASP_MAX_CHANNELS || audio_buses > ASP_MAX_BUSES || frames > ASP_MAX_FRAMES {
+    if haptic_channels <= ASP_MAX_CHANNELS && audio_buses <= ASP_MAX_BUSES {
+        let nothing = Planes::new(std::ptr::null(), 0);
+        let (haptic, audio) = (Planes::new(haptic, haptic_channels), Planes::new(audio, audio_buses));
+        render_planes(renderer, [haptic, audio, nothing], frames);
+    }
+}
+
+/// Renders haptic channels, buses and pickups into a program's planes.
+pub(crate) fn render_planes(renderer: *mut asp_renderer, all: [Planes; 3], frames: u32) {
+    if frames > ASP_MAX_FRAMES {
         return;
     }
-    let (haptic, audio) = (Planes::new(haptic, haptic_channels), Planes::new(audio, audio_buses));
     let frames = frames as usize;
     let mut done = 0;
     guarded(|| {
@@ -107,7 +122,7 @@ pub unsafe extern "C" fn asp_render(
         while done < frames {
             let n = (frames - done).min(CHUNK_FRAMES);
             half.render(n);
-            for (planes, signals) in [(haptic, &half.haptic), (audio, &half.audio)] {
+            for (planes, signals) in all.into_iter().zip([&half.haptic, &half.audio, &half.pickups]) {
                 for channel in 0..planes.count {
                     let silence = [0.0; CHUNK_FRAMES];
                     let signal = signals.get(channel).map_or(&silence[..], Vec::as_slice);
@@ -117,7 +132,7 @@ pub unsafe extern "C" fn asp_render(
             done += n;
         }
     });
-    for planes in [haptic, audio].into_iter().filter(|_| done < frames) {
+    for planes in all.into_iter().filter(|_| done < frames) {
         (0..planes.count).for_each(|channel| planes.put(channel, done, (done..frames).map(|_| 0.0)));
     }
 }
@@ -226,7 +241,7 @@ pub unsafe extern "C" fn asp_signals(
     })
 }
 
-fn moved() -> Failure {
+pub(crate) fn moved() -> Failure {
     Failure::new(ASP_REFUSED, "renderer: has no engine any more; build another one")
 }
 

@@ -11,7 +11,7 @@ use asperity::Refusal;
 /// Most events of one call.
 pub const ASP_MAX_EVENTS: u32 = 65536;
 
-fn refusal(at: u32, reason: &Refusal) -> Failure {
+pub(crate) fn refusal(at: u32, reason: &Refusal) -> Failure {
     let status = match reason {
         Refusal::QueueFull => ASP_FULL,
         Refusal::UnknownSurface

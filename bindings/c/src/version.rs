@@ -6,6 +6,8 @@ use crate::entry::{array, enter};
 use crate::event::asp_event;
 use crate::files::asp_files;
 use crate::image::asp_image;
+use crate::pairs::{asp_collider, asp_placed, asp_touch};
+use crate::pickup::{asp_motion, asp_pickup};
 use crate::player::{asp_player_config, asp_player_report};
 use crate::port::{asp_force, asp_point, asp_port_config};
 use crate::sized::Sized32;
@@ -19,7 +21,7 @@ use std::mem::size_of;
 pub const ASP_ABI: u32 = 1;
 
 /// Number of structs in the header, in the order in which `asp_check_abi` takes their sizes.
-pub const ASP_STRUCTS: u32 = 13;
+pub const ASP_STRUCTS: u32 = 18;
 
 /// Name and sizes of a struct that begins with its size: all that it ever had.
 const fn ages<T: Sized32>() -> (&'static str, &'static [u32]) {
@@ -40,6 +42,11 @@ const STRUCTS: [(&str, &[u32]); ASP_STRUCTS as usize] = [
     ("asp_force", &[size_of::<asp_force>() as u32]),
     ages::<asp_player_config>(),
     ages::<asp_player_report>(),
+    ages::<asp_pickup>(),
+    ("asp_motion", &[size_of::<asp_motion>() as u32]),
+    ages::<asp_collider>(),
+    ("asp_placed", &[size_of::<asp_placed>() as u32]),
+    ("asp_touch", &[size_of::<asp_touch>() as u32]),
 ];
 
 /// Version of the library: major · 65536 + minor · 256 + patch.
@@ -53,9 +60,9 @@ pub extern "C" fn asp_version() -> u32 {
 
 /// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
-/// stats, port_config, point, force, player_config, player_report. One sentence instead of a crash
-/// where a library lies beside another one's header; structs of an older header of this interface
-/// are understood.
+/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider, placed,
+/// touch. One sentence instead of a crash where a library lies beside another one's header; structs
+/// of an older header of this interface are understood.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) -> i32 {
     enter(|| {

@@ -111,7 +111,7 @@ static void make(void) {
     config.clock = rnd(4), config.kernel = rnd(12) ? rnd(2) : rnd(9);
     config.sample_rate_hz = rnd(3) ? 0 : 8000.0 + rnd(90000);
     config.haptic_channels = rnd(6) ? rnd(4) : rnd(100), config.audio_buses = rnd(6) ? rnd(4) : rnd(100);
-    config.more = rnd(3) ? NULL : text();
+    config.pickup_channels = rnd(6) ? rnd(4) : rnd(100), config.more = rnd(3) ? NULL : text();
     asp_files files;
     asp_files_init(&files);
     files.read = read_file, files.user = ids;
@@ -120,7 +120,7 @@ static void make(void) {
     if (rnd(2)) {
         told(asp_build(&config, &scenes[at], &renderers[at]));
     } else {
-        config.haptic_channels = config.audio_buses = 0, config.more = NULL;
+        config.haptic_channels = config.audio_buses = config.pickup_channels = 0, config.more = NULL;
         told(asp_load("a/b.toml", rnd(3) ? text() : NULL, rnd(2) ? &files : NULL, &config, &scenes[at], &renderers[at]));
     }
 }
@@ -254,6 +254,41 @@ static void ports_and_players(void) {
     (void)f;
 }
 
+/* A pickup, a motion, and a world of pairs that takes three steps. */
+static void pickups(void) {
+    asp_pickup pickup;
+    asp_pickup_init(&pickup);
+    pickup.struct_size = size_of(sizeof pickup), pickup.channel = rnd(5), pickup.quantity = rnd(4);
+    pickup.factor = rnd(2) ? 1 : number(), pickup.at_m[0] = rnd(3) ? NAN : number(), pickup.direction[2] = rnd(3) ? NAN : number();
+    told(asp_pickup_add(scene(), id(), rnd(9) ? &pickup : NULL));
+    asp_motion motion = {{number(), 0, 0}, {0, 0, -9.81}, {0, number(), 0}, {0, 0, number()}};
+    told(asp_pickup_motion(scene(), number(), id(), &motion));
+    uint32_t channels, index, events;
+    float read[2][600], *planes[3] = {read[0], NULL, read[1]};
+    asp_renderer *at = renderer();
+    told(asp_pickup_channels(at, rnd(9) ? &channels : NULL));
+    memset(read, 0, sizeof read);
+    asp_pickup_render(at, NULL, rnd(70), NULL, rnd(3), planes, rnd(20) ? rnd(4) : 100, rnd(600));
+    for (int i = 0; i < 1200; i++)
+        MUST(isfinite(read[i / 600][i % 600]));
+    asp_scene *heard = scene();
+    asp_pairs *pairs = NULL;
+    told(asp_pairs_new(heard, rnd(9) ? &pairs : NULL));
+    asp_collider collider;
+    asp_collider_init(&collider);
+    collider.struct_size = size_of(sizeof collider), collider.material = rnd(20), collider.form = rnd(5), collider.body = id();
+    collider.surface = id(), collider.mass_kg = rnd(2) ? 0.1 : number(), collider.radius_m = rnd(2) ? 0.01 : number();
+    told(asp_pairs_add(pairs, &collider, &index));
+    collider.body = id(), collider.surface = id();
+    told(asp_pairs_add(pairs, &collider, &index));
+    asp_placed placed[2] = {{{0, 0, number()}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {number(), 0, 0}, {0, 0, 0}},
+                            {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, number()}, {0, 0, number()}, {0, number(), 0}}};
+    asp_touch touch = {{rnd(3), rnd(3)}, {number(), 0, 0}, {0, 0, rnd(2) ? 1 : number()}, rnd(2) ? 1 : number(), rnd(2) ? 0 : number()};
+    for (int step = 0; step < 3; step++)
+        told(asp_pairs_step(pairs, heard, step + number(), rnd(3) ? 0.002 : number(), placed, &touch, rnd(2), rnd(3) ? &events : NULL));
+    told(asp_pairs_free(pairs));
+}
+
 static void rest(void) {
     uint32_t n;
     uint64_t to;
@@ -262,7 +297,7 @@ static void rest(void) {
     double number_;
     asp_stats stats;
     asp_stats_init(&stats);
-    switch (rnd(23)) {
+    switch (rnd(24)) {
     case 0: told(asp_remove_body(scene(), id())); break;
     case 1: told(asp_remove_surface(scene(), id())); break;
     case 2: told(asp_set_body_bus(scene(), id(), rnd(4))); break;
@@ -285,6 +320,7 @@ static void rest(void) {
     case 19: told(asp_set_sample_rate(scene(), renderer(), rnd(2) ? 48000 : number() * 1e5)); break;
     case 20: told(asp_signals(renderer(), &n, &n, NULL, rnd(2) ? &n : NULL)), told(asp_unity_slot(renderer(), &n)); break;
     case 21: told(asp_get_level(scene(), rnd(5), rnd(2) ? rnd(4) : id(), rnd(9) ? &number_ : NULL)); break;
+    case 22: pickups(); break;
     default: {
         asp_event events[4];
         double times_s[4];

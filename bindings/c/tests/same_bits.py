@@ -1,4 +1,4 @@
-"""same_bits.py STEM RAW: RAW holds the channels of STEM.haptic.wav and STEM.audio.wav one after another, bit for bit."""
+"""same_bits.py STEM RAW KIND...: RAW holds the channels of STEM.KIND.wav one after another, bit for bit."""
 
 import struct
 import sys
@@ -16,8 +16,8 @@ def channels(path):
     return [words[i::count] for i in range(count)]
 
 
-stem, raw = sys.argv[1:]
-expected = [word for path in (".haptic.wav", ".audio.wav") for channel in channels(stem + path) for word in channel]
+stem, raw, *kinds = sys.argv[1:]
+expected = [word for kind in kinds for channel in channels(f"{stem}.{kind}.wav") for word in channel]
 found = open(raw, "rb").read()
 found = list(struct.unpack(f"<{len(found) // 4}I", found))
 assert len(found) == len(expected) > 0, f"{len(found)} samples; must be {len(expected)}"

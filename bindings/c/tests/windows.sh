@@ -22,4 +22,4 @@ cd "$work"
 "$wine" fuzz.exe 1 100
 "$wine" hostile.exe
 "$wine" replay.exe replay.toml replay.jsonl 0.5 replay.f32 256
-python3 "$here/tests/same_bits.py" "$folder/reference" replay.f32
+python3 "$here/tests/same_bits.py" "$folder/reference" replay.f32 haptic audio

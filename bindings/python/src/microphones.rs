@@ -8,7 +8,7 @@ use crate::pictures;
 use crate::sources::Sources;
 use crate::stepped::{Points, Step, Told};
 use asperity::files::FileError;
-use asperity::files::scene_file::{ActuatorEntry, AudioEntry, SceneFile, SurfaceEntry};
+use asperity::files::scene_file::{ActuatorEntry, SceneFile, SurfaceEntry};
 use asperity::load::{Maps, Overrides};
 use asperity::{ContactEvent, Engine, Material, ProbeId, RigidMotion, UvMapping, UvTriangle};
 use asperity_pairs::{Collider, Contact, Form, Placed, Probes, Thing, Vec3, World};
@@ -97,9 +97,9 @@ impl Microphones {
     ) -> PyResult<Self> {
         let sources = Sources::of(files)?;
         let mut file = SceneFile::load_from(&sources, &scene).map_err(|error| sources.told(error))?;
-        // Nothing is felt, and levels of what is heard do not count: no trial has to find them.
+        // Nothing is felt and nobody hears: bodies ring for their pickups alone.
         file.actuators = vec![ActuatorEntry { full_scale: Some(1.0), ..ActuatorEntry::default() }];
-        file.audio.iter_mut().for_each(|bus: &mut AudioEntry| bus.gain = bus.gain.or(Some(1.0)));
+        file.audio.clear();
         file.bodies.iter_mut().for_each(|body| body.strike_gain = body.strike_gain.or(Some(1.0)));
         file.probes.extend(Probes::tables(PROBES));
         let settings = Settings {

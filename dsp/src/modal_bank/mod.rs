@@ -90,7 +90,7 @@ pub use design::{
 pub use free_response::FreeResponse;
 pub use job::{Input, MAX_INPUTS};
 pub use onset_correction::{OnsetCorrection, OnsetSamples};
-pub use phasor::{PhasorGroup, PhasorState};
+pub use phasor::{LaneSums, PhasorGroup, PhasorState, total};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use shedding::{LOUDEST_DB_SPL, MODE_LEVELS, RANKED, SAFETY_DB, SheddingLevels, shedding_order};
 pub use sleep::{SLEEP_AMPLITUDE, ringing_s};

@@ -12,16 +12,35 @@
 //! The sum of the same terms as [`ModalBank`](super::ModalBank)'s, at ten times its price: struck
 //! here and read there it is the same to 1e-7 of the peak as struck there and read here, where the
 //! bank's states round to 2e-6. A retuned mode goes on at its amplitude and phase because z is
-//! both.
+//! both. Products and sums round apart, in one order: the bits are those of every processor.
 
 use super::LANES;
 use super::design::{GroupOptions, Pole};
 use super::job::Input;
 use crate::DesignError;
 use crate::mode::Mode;
+use crate::simd::{Level, Set, at_level};
 use core::array::from_fn;
+use fearless_simd::f64x8;
+use fearless_simd::prelude::*;
 
 type Row = [f64; LANES];
+
+/// Lanes that go together: with their coefficients, as many as there are registers for.
+const WIDE: usize = 8;
+/// Samples at a time: a stretch is mostly shorter than a cell of the grid, and what is not heard of
+/// a chunk has to be emptied too.
+const CHUNK: usize = 16;
+
+/// Output of a sample in parts, which are added up once for all groups ([`total`]).
+pub type LaneSums = [f64; WIDE];
+
+/// The sum of the parts of an output.
+#[must_use]
+pub fn total(parts: &LaneSums) -> f64 {
+    let four: [f64; 4] = from_fn(|l| parts[l] + parts[l + 4]);
+    (four[0] + four[2]) + (four[1] + four[3])
+}
 
 /// Coefficients of up to 16 modes; unused lanes are silent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +48,8 @@ pub struct PhasorGroup {
     lambda: [Row; 2],
     gain: [Row; 2],
     direct: Row,
+    /// Lanes up to the last mode.
+    used: usize,
 }
 
 /// State of 16 modes between samples.
@@ -41,7 +62,8 @@ impl PhasorGroup {
     /// # Errors
     /// Names the field that is out of range.
     pub fn new(modes: &[Mode], sample_rate_hz: f64, options: &GroupOptions) -> Result<Self, DesignError> {
-        let mut group = Self { lambda: [[0.0; LANES]; 2], gain: [[0.0; LANES]; 2], direct: [0.0; LANES] };
+        let (none, used) = ([[0.0; LANES]; 2], modes.len().min(LANES));
+        let mut group = Self { lambda: none, gain: none, direct: [0.0; LANES], used };
         for (lane, mode) in modes.iter().enumerate().take(LANES) {
             let Some(pole) = Pole::new(mode, sample_rate_hz, options)? else { continue };
             let radius = libm::exp(-pole.decay);
@@ -57,26 +79,52 @@ impl PhasorGroup {
 
     /// Adds the response to the inputs to `out`; the gains of an input for these modes are those at
     /// `index`, 1 where it has none.
-    pub fn run(&self, index: usize, state: &mut PhasorState, inputs: &[Input<'_>], out: &mut [f64]) {
-        let [re, im] = &mut state.0;
-        for (n, out) in out.iter_mut().enumerate() {
-            let mut x = [0.0; LANES];
+    pub fn run(
+        &self,
+        level: Level,
+        index: usize,
+        state: &mut PhasorState,
+        inputs: &[Input<'_>],
+        out: &mut [LaneSums],
+    ) {
+        for (at, out) in (0..).step_by(CHUNK).zip(out.chunks_mut(CHUNK)) {
+            at_level!(level.at_most_256_bits(), s => self.run_chunk(s, index, state, (inputs, at), out));
+        }
+    }
+
+    #[inline(always)]
+    fn run_chunk<S: Set>(
+        &self,
+        s: S,
+        index: usize,
+        state: &mut PhasorState,
+        (inputs, at): (&[Input<'_>], usize),
+        out: &mut [LaneSums],
+    ) {
+        let [all_re, all_im] = &mut state.0;
+        for from in (0..self.used).step_by(WIDE) {
+            let part = |row: &Row| f64x8::from_slice(s, &row[from..from + WIDE]);
+            let mut driven = [f64x8::splat(s, 0.0); CHUNK];
             for input in inputs {
-                let u = f64::from(input.impulses[n]);
-                match input.gains.get(index) {
-                    Some(gains) => x.iter_mut().zip(gains.0).for_each(|(x, gain)| *x += f64::from(gain) * u),
-                    None => x.iter_mut().for_each(|x| *x += u),
+                let gains = input.gains.get(index);
+                let gains: [f64; WIDE] = from_fn(|l| gains.map_or(1.0, |gains| f64::from(gains.0[from + l])));
+                let gains = f64x8::from_slice(s, &gains);
+                for (x, impulse) in driven[..out.len()].iter_mut().zip(&input.impulses[at..]) {
+                    *x = *x + gains * f64x8::splat(s, f64::from(*impulse));
                 }
             }
-            let [lambda_re, lambda_im] = &self.lambda;
-            let turned: [Row; 2] = [
-                from_fn(|l| lambda_re[l] * re[l] - lambda_im[l] * im[l] + x[l]),
-                from_fn(|l| lambda_re[l] * im[l] + lambda_im[l] * re[l]),
-            ];
-            (*re, *im) = (turned[0], turned[1]);
-            let each: Row =
-                from_fn(|l| self.gain[1][l] * re[l] + self.gain[0][l] * im[l] + self.direct[l] * x[l]);
-            *out += each.iter().sum::<f64>();
+            let (lambda_re, lambda_im) = (part(&self.lambda[0]), part(&self.lambda[1]));
+            let (gain_re, gain_im, direct) = (part(&self.gain[0]), part(&self.gain[1]), part(&self.direct));
+            let (mut re, mut im) = (part(all_re), part(all_im));
+            for (x, out) in driven.iter().zip(out.iter_mut()) {
+                let turned = lambda_re * re - lambda_im * im + *x;
+                im = lambda_re * im + lambda_im * re;
+                re = turned;
+                let heard = gain_im * re + gain_re * im + direct * *x;
+                (f64x8::from_slice(s, out) + heard).store_slice(out);
+            }
+            re.store_slice(&mut all_re[from..from + WIDE]);
+            im.store_slice(&mut all_im[from..from + WIDE]);
         }
     }
 
@@ -96,5 +144,51 @@ impl PhasorState {
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.0.as_flattened().iter().all(|x| *x == 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::modal_bank::LaneGains;
+    use crate::rng::Rng;
+    use std::{vec, vec::Vec};
+
+    /// Outputs of eleven modes that two inputs drive, in blocks of such a length.
+    fn outputs(level: Level, block: usize) -> Vec<f64> {
+        let mut rng = Rng::new(5);
+        let mode = |rng: &mut Rng| Mode {
+            frequency_hz: 100.0 + 9000.0 * rng.uniform(),
+            decay_per_s: 5.0 + 50.0 * rng.uniform(),
+            amplitude: rng.normal(),
+            phase_rad: 0.0,
+        };
+        let modes: Vec<Mode> = (0..11).map(|_| mode(&mut rng)).collect();
+        let impulses: [Vec<f32>; 2] = [0, 1].map(|_| (0..256).map(|_| rng.normal() as f32).collect());
+        let gains = [LaneGains(from_fn(|_| rng.normal() as f32))];
+        let options = GroupOptions { derivative: 2, ..GroupOptions::IMPULSE_RING };
+        let group = PhasorGroup::new(&modes, 16e3, &options).unwrap();
+        let (mut state, mut all) = (PhasorState::default(), Vec::new());
+        for at in (0..256).step_by(block) {
+            let mut out = vec![LaneSums::default(); block];
+            let inputs = [
+                Input { impulses: &impulses[0][at..], gains: &gains },
+                Input { impulses: &impulses[1][at..], gains: &[] },
+            ];
+            group.run(level, 0, &mut state, &inputs, &mut out);
+            all.extend(out.iter().map(total));
+        }
+        all
+    }
+
+    #[test]
+    fn every_processor_and_any_cut_has_the_same_bits() {
+        let whole = outputs(Level::PORTABLE, 256);
+        assert!(whole.iter().all(|x| x.is_finite()) && whole.iter().any(|x| x.abs() > 1.0));
+        for level in Level::available() {
+            for block in [1, 32, 128] {
+                assert_eq!(outputs(level, block), whole, "{level:?}, blocks of {block}");
+            }
+        }
     }
 }

@@ -246,10 +246,15 @@ impl Renderer {
         }
     }
 
+    /// Way of rendering bodies from a sample on.
+    pub(super) fn body_terms(&self, position: u64) -> RenderArgs {
+        RenderArgs { position, mode_level: self.governor.mode_level(), heard: !self.buses.is_empty() }
+    }
+
     /// Writes the sound of the bodies, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         self.buses.iter_mut().for_each(|bus| bus.begin(self.position, n));
-        let terms = RenderArgs { position: self.position, mode_level: self.governor.mode_level() };
+        let terms = self.body_terms(self.position);
         if let Some(crew) = &mut self.crew {
             crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
         }
@@ -257,7 +262,7 @@ impl Renderer {
         for index in self.bodies_used.iter() {
             let entry = self.crew.as_mut().and_then(|crew| crew.take_body(index));
             let body = &mut self.bodies[index];
-            if body.is_plain() {
+            if terms.heard && body.is_plain() {
                 shed += body.render(terms, entry, self.buses[body.bus()].slice(n));
             } else {
                 shed += render_moving(terms, entry, body, &mut self.buses, &mut self.mix.body[..n]);
@@ -304,7 +309,11 @@ fn render_moving(
     sound.fill(0.0);
     let shed = body.render(terms, entry, sound);
     body.scale(sound);
-    body.spread(sound, |bus, i, x| buses[bus].slice(sound.len())[i] += x);
+    body.spread(sound, |bus, i, x| {
+        if let Some(bus) = buses.get_mut(bus) {
+            bus.slice(sound.len())[i] += x;
+        }
+    });
     shed
 }
 

@@ -158,7 +158,7 @@ impl RenderPool {
         let body_share = |_| {
             Box::new(BodyTask {
                 index: 0,
-                terms: RenderArgs { position: 0, mode_level: 0 },
+                terms: RenderArgs { position: 0, mode_level: 0, heard: true },
                 n: 0,
                 body: None,
                 cost: 0,

@@ -12,7 +12,6 @@
 use super::Renderer;
 use crate::link::message::{Made, Retired};
 use crate::link::stats::Counters;
-use crate::resource::body::RenderArgs;
 use asperity_surface::height_field::MAX_BLOCK;
 
 /// Bodies that ring out at the same time.
@@ -57,9 +56,8 @@ impl Renderer {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let n = to_grid + MAX_BLOCK;
         let mut sound = [0.0; 2 * MAX_BLOCK];
-        let mode_level = self.governor.mode_level();
         for (from, to) in [(0, to_grid), (to_grid, n)] {
-            let terms = RenderArgs { position: self.position + from as u64, mode_level };
+            let terms = self.body_terms(self.position + from as u64);
             self.bodies[seat].render(terms, None, &mut sound[from..to]);
         }
         let body = &mut self.bodies[seat];
@@ -67,7 +65,9 @@ impl Renderer {
         body.spread(&sound[..n], |bus, i, x| {
             // Without a corner at either end.
             let left = 1.0 - (i + 1) as f32 / n as f32;
-            self.buses[bus].end_with(self.position + i as u64, left * left * (3.0 - 2.0 * left) * x);
+            if let Some(bus) = self.buses.get_mut(bus) {
+                bus.end_with(self.position + i as u64, left * left * (3.0 - 2.0 * left) * x);
+            }
         });
         self.send_home(seat, Retired::Cut);
     }

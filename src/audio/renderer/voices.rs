@@ -97,6 +97,7 @@ impl Gathering<'_> {
 
 impl Renderer {
     pub(super) fn render_contacts(&mut self, n: usize, tap: &mut dyn Tap) {
+        let terms = self.body_terms(self.position);
         let tap = &mut self.outlets.beside(tap);
         let at = SampleRange { position: self.position, n };
         let watched = tap.is_watching();
@@ -106,7 +107,6 @@ impl Renderer {
             let shared_out = crew.send_contacts(at, &self.shared, voices, &mut self.seats, &self.channels);
             shared_out.then_some(crew)
         });
-        let terms = RenderArgs { position: at.position, mode_level: self.governor.mode_level() };
         let mut gathering = Gathering {
             at,
             channels: &mut self.channels,

@@ -87,12 +87,13 @@ impl Rolling {
             self.ride = [RollingState::at(height_m.last().copied().unwrap_or_default()); 2];
             return;
         }
-        for (height_m, sample) in heard_m.iter_mut().flat_map(|heard_m| &mut heard_m[..n]).zip(position..) {
+        let heard_m = heard_m.iter_mut().flat_map(|heard_m| &mut heard_m[..n]);
+        for (height_m, share) in heard_m.zip(shares(self.share, position, slow_step)) {
             let ride_m = self.ride[1].tick(&self.filter, *height_m);
-            *height_m += share_at(self.share, sample, slow_step) * (ride_m - *height_m);
+            *height_m += share * (ride_m - *height_m);
         }
-        for (i, (height_m, friction)) in height_m.iter_mut().zip(&mut surface.friction).enumerate() {
-            let share = share_at(self.share, position + i as u64, slow_step);
+        let ridden = height_m.iter_mut().zip(&mut surface.friction);
+        for ((height_m, friction), share) in ridden.zip(shares(self.share, position, slow_step)) {
             let ride_m = self.ride[0].tick(&self.filter, *height_m);
             *height_m += share * (ride_m - *height_m);
             if rubbed {
@@ -107,8 +108,7 @@ impl Rolling {
             self.sent = Default::default();
             return;
         }
-        for (impulse_n_s, sample) in impulses_n_s.iter_mut().zip(position..) {
-            let share = share_at(self.share, sample, slow_step);
+        for (impulse_n_s, share) in impulses_n_s.iter_mut().zip(shares(self.share, position, slow_step)) {
             let patch_n_s = self.sent.tick(&self.force, *impulse_n_s);
             *impulse_n_s += share * (patch_n_s - *impulse_n_s);
         }
@@ -117,9 +117,8 @@ impl Rolling {
     /// Speeds over the ground become those of the slip.
     pub(super) fn slow_down(&self, position: u64, slow_step: u64, sweep_m_s: &mut [f64]) {
         if self.rolls() {
-            for (sweep_m_s, sample) in sweep_m_s.iter_mut().zip(position..) {
-                *sweep_m_s *= 1.0 - share_at(self.share, sample, slow_step);
-            }
+            let shares = shares(self.share, position, slow_step);
+            sweep_m_s.iter_mut().zip(shares).for_each(|(sweep_m_s, share)| *sweep_m_s *= 1.0 - share);
         }
     }
 
@@ -131,7 +130,9 @@ impl Rolling {
     }
 }
 
-/// The share at a sample between two steps of the grid.
-fn share_at([from, to]: [f64; 2], sample: u64, slow_step: u64) -> f64 {
-    from + (sample % slow_step + 1) as f64 / slow_step as f64 * (to - from)
+/// Shares at the samples from a position on; a stretch lies between two steps of the grid.
+fn shares([from, to]: [f64; 2], position: u64, slow_step: u64) -> impl Iterator<Item = f64> {
+    // One division of integers: they are slower than all else here.
+    let first = (position % slow_step) as u32 + 1;
+    (first..).map(move |i| from + f64::from(i) / slow_step as f64 * (to - from))
 }

@@ -123,7 +123,7 @@ impl Scene {
 
     pub(super) fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
         let buses = self.config.audio.len();
-        if bus < buses { Ok(bus) } else { Err(AddError::UnknownBus { bus, buses }) }
+        if bus < buses.max(1) { Ok(bus) } else { Err(AddError::UnknownBus { bus, buses }) }
     }
 
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {

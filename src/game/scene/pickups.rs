@@ -18,6 +18,16 @@ const OFF_SURFACE: f64 = 0.01;
 const STEADY_S: f64 = 0.1;
 
 impl Scene {
+    /// Puts another pickup on a body; what the body rings meanwhile rings out unread.
+    ///
+    /// # Errors
+    /// When the body is not in this scene, or as [`add_body`](Self::add_body).
+    pub fn add_pickup(&mut self, body: BodyId, pickup: Pickup) -> Result<(), AddError> {
+        self.known_body(body)?;
+        let given = self.given.get(&body).cloned().ok_or(AddError::Unknown("body"))?;
+        self.replace_body(body, given.pickup(pickup))
+    }
+
     /// Tells the accelerometers of a body how it moves as a whole: they read it from there on, in a
     /// straight line over the time since the report before.
     pub(super) fn report_motion(

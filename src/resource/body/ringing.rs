@@ -107,7 +107,10 @@ impl BodySlot {
             [Input { impulses, gains: [] }] => Inputs::One(impulses),
             _ => Inputs::Placed(&inputs[..count]),
         };
-        self.bank.render_leading(driven, terms.position, inputs, out);
+        // What rubs it asks its bank how it will move.
+        if terms.heard || self.rub.as_ref().is_some_and(|rub| !rub.is_idle()) {
+            self.bank.render_leading(driven, terms.position, inputs, out);
+        }
         self.end_stretch(terms.position, n);
         groups - driven
     }

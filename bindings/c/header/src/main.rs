@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 /// Signs of the documentation that some compilers' code pages do not have, and how they are written
 /// without.
-const SIGNS: [(&str, &str); 8] = [
+const SIGNS: [(&str, &str); 9] = [
     ("π", " pi "),
     ("…", "..."),
     ("−", "-"),
     ("²⁶", "^26"),
     ("²⁴", "^24"),
+    ("²", "2"),
     ("³", "3"),
     (" · ", " "),
     ("·", " "),

@@ -14,6 +14,8 @@ const REST_STEPS: u32 = 6;
 const PULL: f32 = 0.3;
 /// Beyond this the reported place is right, m.
 const TELEPORT_M: f32 = 0.01;
+/// Share of its path by which the slip of what turns differs from it.
+const TURNS: f32 = 1e-3;
 /// A pair whose slip is below this share of its path rolls.
 const ROLLING: f32 = 0.3;
 
@@ -123,8 +125,9 @@ impl Pair {
         let placed = self.sample(step, solved, scraped, path);
         self.unplaced = placed.is_none().then_some(scraped);
         let Some((mut sample, surface)) = placed else { return self.end(events) };
-        // What is not round slides as fast as it moves.
-        if let Some(radius_m) = step.roll_radius_m(solved, scraped) {
+        // What is not round, or does not turn, slides as fast as it moves.
+        let slides = path.distance(slip) <= TURNS * path.length();
+        if let Some(radius_m) = step.roll_radius_m(solved, scraped).filter(|_| !slides) {
             sample = sample.rolling(radius_m).slipping(f64::from(slip.length()));
         }
         // One that rests keeps the face that it slid with.
