@@ -160,6 +160,7 @@ struct Meters {
 }
 
 /// Messages to the supervisor.
+#[derive(Debug)]
 enum Message {
     /// The stream with this number is gone.
     Lost(u64),
@@ -167,6 +168,7 @@ enum Message {
 }
 
 /// A playing engine. Dropping it stops the sound.
+#[derive(Debug)]
 pub struct Player {
     meters: Arc<Meters>,
     rate_hz: f64,
@@ -174,6 +176,7 @@ pub struct Player {
     engine: Engine,
 }
 
+#[derive(Debug)]
 enum Engine {
     Device { supervisor: Option<JoinHandle<()>>, orders: Sender<Message> },
     Silent { sink: Option<NullSink>, block_frames: usize, why: DeviceError },
