@@ -125,7 +125,7 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         warnings: set.empty_parts().into_iter().collect(),
     };
     for index in mine {
-        match set.shard(index, || progress.advance(1)).map_err(CliError::from_error)? {
+        match set.shard(index, &mut || progress.advance(1)).map_err(CliError::from_error)? {
             Outcome::Made { clipped } => {
                 report.made += 1;
                 report.clipped_samples += clipped;
@@ -171,7 +171,7 @@ fn check(options: &VerifyOptions) -> Result<(), CliError> {
     let shards = asperity_batch::manifest::Manifest::load(&options.folder).map_err(CliError::from_error)?;
     let mut progress = Progress::new("shards", shards.map_or(0, |manifest| manifest.shards.len() as u64));
     let found =
-        verify(&options.folder, options.sample, || progress.advance(1)).map_err(CliError::from_error)?;
+        verify(&options.folder, options.sample, &mut || progress.advance(1)).map_err(CliError::from_error)?;
     drop(progress);
     if options.json {
         return output::say_json(&Checked {

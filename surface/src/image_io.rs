@@ -96,22 +96,27 @@ pub fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     Ok(BufReader::new(file))
 }
 
+/// What a picture is read from, as a trait object: decoders are compiled once, not for each.
+trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
 /// The picture of a file that has this channel, turned as EXIF says.
-fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<Picture, Problem> {
-    Ok(decode_as(file, channel)?.0)
+fn decode(mut file: impl BufRead + Seek, channel: Channel) -> Result<Picture, Problem> {
+    Ok(decode_as(&mut file, channel)?.0)
 }
 
 /// The picture of a photograph's file, with the brightness that the file itself has.
 ///
 /// # Errors
 /// As [`load_channel`].
-pub fn decode_photograph(file: impl BufRead + Seek) -> Result<Picture, Problem> {
-    let (photograph, format) = decode_as(file, Channel::Luma)?;
+pub fn decode_photograph(mut file: impl BufRead + Seek) -> Result<Picture, Problem> {
+    let (photograph, format) = decode_as(&mut file, Channel::Luma)?;
     Ok(if format == ImageFormat::Jpeg { photograph.of_jpeg() } else { photograph })
 }
 
 /// Picture, and the kind of file it is.
-fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture, ImageFormat), Problem> {
+fn decode_as(mut file: &mut dyn Source, channel: Channel) -> Result<(Picture, ImageFormat), Problem> {
     let format = format_of(&mut file)?;
     #[cfg(feature = "exr")]
     if format == ImageFormat::OpenExr {
@@ -150,9 +155,9 @@ fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture
 }
 
 /// Kind of a file, by its first bytes.
-fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
+fn format_of(file: &mut dyn Source) -> Result<ImageFormat, Problem> {
     let mut first = Vec::new();
-    file.by_ref().take(FIRST_BYTES).read_to_end(&mut first).map_err(Problem::Io)?;
+    (&mut *file).take(FIRST_BYTES).read_to_end(&mut first).map_err(Problem::Io)?;
     file.rewind().map_err(Problem::Io)?;
     if let Some((kind, instead)) = other_kinds::of(&first) {
         return Err(Problem::OtherFormat { kind, instead });

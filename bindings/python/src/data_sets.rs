@@ -72,7 +72,7 @@ impl NativeDataSet {
             let set = self.set.lock().unwrap_or_else(PoisonError::into_inner);
             let made = pulse.run(|tell| {
                 let mut done = 0;
-                set.shard(index, || {
+                set.shard(index, &mut || {
                     done += 1;
                     tell(done as f64 / strokes as f64);
                 })
@@ -111,7 +111,7 @@ pub fn verify(
     let found = py.detach(|| {
         pulse.run(|tell| {
             let mut done = 0;
-            asperity_batch::verify(&folder, sample, || {
+            asperity_batch::verify(&folder, sample, &mut || {
                 done += 1;
                 tell(done as f64 / shards.max(1) as f64);
             })

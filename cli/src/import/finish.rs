@@ -9,8 +9,11 @@
 use crate::error::CliError;
 use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_shape::gltf::Document;
+use asperity_surface::image_io::decode_photograph;
+use asperity_surface::picture::Channel;
 use asperity_surface::raster::Raster;
 use serde_json::Value;
+use std::io::Cursor;
 
 /// Micro-relief of a surface in our terms.
 pub struct Finish {
@@ -72,12 +75,15 @@ pub fn heights(
 ) -> Result<Heights, CliError> {
     let picture = document.picture(&texture["index"], at)?;
     let wrong = |what: String| document.wrong(at, what, "must be a normal map as PNG or JPEG");
-    let picture = image::load_from_memory(&picture).map_err(|error| wrong(error.to_string()))?.to_rgb16();
-    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let read = decode_photograph(Cursor::new(picture)).and_then(|picture| {
+        let channel = |channel| picture.channel(channel).map(|found| found.raster.values);
+        Ok((picture.size(), channel(Channel::R)?, channel(Channel::G)?, channel(Channel::B)?))
+    });
+    let ([width, height], red, green, blue) = read.map_err(|error| wrong(error.to_string()))?;
     let texel_m = [extent_m[0] / width.max(1) as f64, extent_m[1] / height.max(1) as f64];
     let higher = texel_m[1] / texel_m[0];
-    let normals = picture.pixels().map(|p| {
-        let rgb = p.0.map(|c| f64::from(c) / 65_535.0);
+    let normals = (0..red.len()).map(|at| {
+        let rgb = [red[at], green[at], blue[at]];
         if (higher - 1.0).abs() > 0.01 { stretched(rgb, higher) } else { rgb }
     });
     let normals: Vec<[f64; 3]> = normals.collect();

@@ -137,11 +137,11 @@ impl DataSet {
     ///
     /// # Errors
     /// When a stroke is refused, the disk is full, or the shard that is there is of another build.
-    pub fn shard(&self, index: u64, progress: impl FnMut()) -> Result<Outcome, FileError> {
+    pub fn shard(&self, index: u64, progress: &mut dyn FnMut()) -> Result<Outcome, FileError> {
         self.made(index, progress).inspect_err(|_| self.fresh.undo(&self.folder))
     }
 
-    fn made(&self, index: u64, mut progress: impl FnMut()) -> Result<Outcome, FileError> {
+    fn made(&self, index: u64, progress: &mut dyn FnMut()) -> Result<Outcome, FileError> {
         let name = self.file(index);
         let path = self.folder.join(&name);
         let per_shard = self.spec.says.per_shard;
@@ -159,7 +159,7 @@ impl DataSet {
         let written = whole_file::write_with(&path, |file| {
             drop(began.take());
             let mut out = Summed { out: file, sum: Sha256::new() };
-            let made = self.write(&mut out, first..last, &mut clipped, &mut progress);
+            let made = self.write(&mut out, first..last, &mut clipped, progress);
             sum = hex(&out.sum.finalize_reset());
             made.map_err(|failure| match failure {
                 Failure::Disk(error) => error,
@@ -215,10 +215,10 @@ impl DataSet {
 
     fn write(
         &self,
-        out: &mut (impl Write + Send),
+        out: &mut (dyn Write + Send),
         strokes: std::ops::Range<u64>,
         clipped: &mut u64,
-        progress: &mut impl FnMut(),
+        progress: &mut dyn FnMut(),
     ) -> Result<(), Failure> {
         let output = &self.spec.says.output;
         let mut more = [

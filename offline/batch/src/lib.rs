@@ -13,7 +13,7 @@
 //!
 //! let set = DataSet::open(Spec::load("strokes.toml".as_ref())?, "strokes".as_ref())?;
 //! for index in 0..set.spec().shards() {
-//!     set.shard(index, || ())?;
+//!     set.shard(index, &mut || ())?;
 //! }
 //! set.write_manifest()?;
 //! # Ok::<(), asperity::files::FileError>(())

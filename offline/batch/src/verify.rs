@@ -26,7 +26,7 @@ pub struct Verified {
 ///
 /// # Errors
 /// The first shard that is bad, in one line.
-pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<Verified, FileError> {
+pub fn verify(folder: &Path, share: f64, progress: &mut dyn FnMut()) -> Result<Verified, FileError> {
     let manifest = Manifest::load(folder)?.ok_or_else(|| {
         FileError::file(
             &folder.join(NAME),

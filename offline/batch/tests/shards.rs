@@ -40,7 +40,7 @@ fn set(folder: &TempDir, text: &str, name: &str) -> Result<DataSet, FileError> {
 
 fn make(set: &DataSet, shards: impl IntoIterator<Item = u64>) {
     for index in shards {
-        set.shard(index, || ()).unwrap();
+        set.shard(index, &mut || ()).unwrap();
     }
     set.write_manifest().unwrap();
 }
@@ -76,12 +76,12 @@ fn shards_have_the_same_bytes_in_any_order_and_after_a_killed_run() {
         .unwrap();
         fs::write(one.join(".shard-000001.part"), b"half").unwrap();
         let again = set(&folder, &text, "one").unwrap();
-        assert_eq!(again.shard(0, || ()).unwrap(), Outcome::Kept);
-        assert!(matches!(again.shard(1, || ()).unwrap(), Outcome::Made { .. }));
-        assert!(matches!(again.shard(2, || ()).unwrap(), Outcome::Made { .. }));
+        assert_eq!(again.shard(0, &mut || ()).unwrap(), Outcome::Kept);
+        assert!(matches!(again.shard(1, &mut || ()).unwrap(), Outcome::Made { .. }));
+        assert!(matches!(again.shard(2, &mut || ()).unwrap(), Outcome::Made { .. }));
         again.write_manifest().unwrap();
         assert_eq!(bytes(&folder, "one"), bytes(&folder, "other"));
-        let found = verify(&one, 1.0, || ()).unwrap();
+        let found = verify(&one, 1.0, &mut || ()).unwrap();
         assert_eq!((found.shards, found.rendered, found.missing), (3, 10, 0));
     }
 }
@@ -149,7 +149,7 @@ fn shards_of_another_build_are_refused() {
     // A shard alone tells as well.
     fs::remove_file(folder.path().join("set/manifest.json")).unwrap();
     let other = set(&folder, &SPEC.replace("seed = 11", "seed = 12"), "set").unwrap();
-    let error = other.shard(0, || ()).unwrap_err().to_string();
+    let error = other.shard(0, &mut || ()).unwrap_err().to_string();
     assert!(error.contains("shard-000000.parquet: is of another specification"), "{error}");
     let mut build = asperity_batch::Build::of(other.spec());
     build.version = "0.0.9".to_owned();
@@ -166,9 +166,9 @@ fn verify_names_the_first_bad_shard() {
     let middle = changed.len() / 2;
     changed[middle] ^= 1;
     fs::write(&path, changed).unwrap();
-    let error = verify(&folder.path().join("set"), 0.0, || ()).unwrap_err().to_string();
+    let error = verify(&folder.path().join("set"), 0.0, &mut || ()).unwrap_err().to_string();
     assert!(error.contains("shard-000001.parquet: has other bytes"), "{error}");
-    let error = verify(folder.path(), 0.0, || ()).unwrap_err().to_string();
+    let error = verify(folder.path(), 0.0, &mut || ()).unwrap_err().to_string();
     assert!(error.contains("manifest.json: no such file"), "{error}");
 }
 
@@ -190,7 +190,7 @@ fn wrong_specifications_are_refused_in_one_line_and_leave_no_shard() {
         let text = SPEC.replace(from, to);
         assert_ne!(text, SPEC);
         let made = set(&folder, &text, "set")
-            .and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
+            .and_then(|set| (0..3).try_for_each(|index| set.shard(index, &mut || ()).map(drop)));
         let error = made.err().unwrap_or_else(|| panic!("{to} was accepted")).to_string();
         assert!(error.contains(part) && !error.contains('\n'), "{to}: {error}");
         // Strokes before the refused one may have made whole shards; without one the folder is gone
@@ -245,7 +245,7 @@ fn a_scene_file_s_maps_are_copied_and_a_record_renders_from_the_folder_alone() {
     fs::remove_file(folder.path().join("bricks.toml")).unwrap();
     let moved = folder.path().join("moved");
     fs::rename(folder.path().join("set"), &moved).unwrap();
-    assert_eq!(verify(&moved, 1.0, || ()).unwrap().rendered, 10);
+    assert_eq!(verify(&moved, 1.0, &mut || ()).unwrap().rendered, 10);
     let is_copied = |path: &Path| path.join("map.pgm").exists();
     assert!(fs::read_dir(moved.join("surfaces")).unwrap().any(|entry| is_copied(&entry.unwrap().path())));
 }
@@ -395,7 +395,7 @@ fn quantities_and_force_are_read_back_and_rendered_again_from_either_format() {
     for format in ["parquet", "webdataset"] {
         let folder = tempfile::tempdir().unwrap();
         make(&set(&folder, &spec_with_force(format), "set").unwrap(), 0..3);
-        assert_eq!(verify(&folder.path().join("set"), 1.0, || ()).unwrap().rendered, 10, "{format}");
+        assert_eq!(verify(&folder.path().join("set"), 1.0, &mut || ()).unwrap().rendered, 10, "{format}");
         let manifest = Manifest::load(&folder.path().join("set")).unwrap().unwrap();
         let further = &manifest.further_haptic[0];
         assert_eq!((further.column.as_str(), further.unit.as_str()), ("haptic_acceleration", "m/s^2"));

@@ -8,11 +8,10 @@
 //!
 //! Source: OpenEXR, "Technical introduction" and "Standard attributes" (channel names).
 
-use super::{MAX_SIDE, MAX_TEXELS, Picture, Problem, Samples, one_line};
+use super::{MAX_SIDE, MAX_TEXELS, Picture, Problem, Samples, Source, one_line};
 use exr::block::reader::ChunksReader;
 use exr::meta::attribute::ChannelDescription;
 use exr::meta::header::Header;
-use std::io::{BufRead, Seek};
 
 /// Names that channels of a picture go by, in the order of a pixel.
 const COLOURS: [[&str; 4]; 2] = [["R", "G", "B", "A"], ["X", "Y", "Z", "A"]];
@@ -27,7 +26,7 @@ struct Layer {
 }
 
 /// The picture of an EXR file.
-pub(super) fn read(file: impl BufRead + Seek) -> Result<Picture, Problem> {
+pub(super) fn read(file: &mut dyn Source) -> Result<Picture, Problem> {
     let reader = exr::block::read(file, false).map_err(translate)?;
     let Layer { part, channels, .. } = layer(reader.headers())?;
     let header = &reader.headers()[part];

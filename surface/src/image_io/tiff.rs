@@ -1,13 +1,12 @@
 //! TIFF maps of one channel of 32 or 64 bits, as terrain programs write them: `image` reads such
 //! numbers only in colour.
 
-use super::{MAX_SIDE, MAX_TEXELS, Picture, Problem, Samples, one_line};
-use std::io::{BufRead, Seek};
+use super::{MAX_SIDE, MAX_TEXELS, Picture, Problem, Samples, Source, one_line};
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
 /// The picture, if it is of that kind; leaves the file at its beginning if not.
-pub(super) fn read(file: &mut (impl BufRead + Seek)) -> Result<Option<Picture>, Problem> {
+pub(super) fn read(file: &mut dyn Source) -> Result<Option<Picture>, Problem> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MAX_TEXELS as usize;
     limits.intermediate_buffer_size = MAX_TEXELS as usize;
