@@ -87,10 +87,11 @@ fn walk_by_width<T: Set>(token: T, first_sample: u64, job: &mut Job<'_>, out: &m
     // SAFETY: `out` is no longer than any input, there is a group, and there are states and gains
     // of all.
     unsafe {
-        match LANES / len::<T>() {
+        // Constants, so that only what a level runs is compiled for it.
+        match const { LANES / len::<T>() } {
             1 => walk::<T, 1, 4>(token, first_sample, job, out),
             2 => walk::<T, 2, 4>(token, first_sample, job, out),
-            _ if T::FUSED => walk::<T, 4, 3>(token, first_sample, job, out),
+            _ if const { T::FUSED } => walk::<T, 4, 3>(token, first_sample, job, out),
             _ => walk::<T, 4, 1>(token, first_sample, job, out),
         }
     }

@@ -78,9 +78,9 @@ unsafe fn sets<T: Set, const P: usize, const MAX: usize>(
         unsafe {
             match size {
                 1 => parts::<T, P, 1>(token, job, from, chunk, turns),
-                2 if MAX >= 2 => parts::<T, P, 2>(token, job, from, chunk, turns),
-                3 if MAX >= 3 => parts::<T, P, 3>(token, job, from, chunk, turns),
-                _ if MAX >= 4 => parts::<T, P, 4>(token, job, from, chunk, turns),
+                2 if const { MAX >= 2 } => parts::<T, P, 2>(token, job, from, chunk, turns),
+                3 if const { MAX >= 3 } => parts::<T, P, 3>(token, job, from, chunk, turns),
+                _ if const { MAX >= 4 } => parts::<T, P, 4>(token, job, from, chunk, turns),
                 _ => {}
             }
         }
@@ -107,7 +107,7 @@ unsafe fn parts<T: Set, const P: usize, const S: usize>(
 ) {
     // SAFETY: passed on from the caller; P · `len` lanes make a group.
     unsafe {
-        if P * S <= MOST_VECTORS {
+        if const { P * S <= MOST_VECTORS } {
             inputs::<T, P, S>(token, job, Part { from, lane: 0 }, chunk, turns);
         } else {
             for p in 0..P {
