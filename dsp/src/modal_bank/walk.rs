@@ -131,12 +131,32 @@ unsafe fn inputs<T: Set, const P: usize, const S: usize>(
     unsafe {
         match job.feed.inputs.len() {
             _ if job.feed.shared && part.from == 0 => {
-                set::<T, P, S, SHARED_FIRST>(token, job, part, chunk, turns)
+                set_apart::<T, P, S, SHARED_FIRST>(token, job, part, chunk, turns)
             }
-            _ if job.feed.shared => set::<T, P, S, SHARED>(token, job, part, chunk, turns),
-            1 => set::<T, P, S, 1>(token, job, part, chunk, turns),
-            2 => set::<T, P, S, 2>(token, job, part, chunk, turns),
-            _ => set::<T, P, S, ANY>(token, job, part, chunk, turns),
+            _ if job.feed.shared => set_apart::<T, P, S, SHARED>(token, job, part, chunk, turns),
+            1 => set_apart::<T, P, S, 1>(token, job, part, chunk, turns),
+            2 => set_apart::<T, P, S, 2>(token, job, part, chunk, turns),
+            _ => set_apart::<T, P, S, ANY>(token, job, part, chunk, turns),
         }
     }
+}
+
+/// [`set`] as a function of its own, once for a level: a compiler that sees all of them in one
+/// function takes ten times as long.
+///
+/// # Safety
+/// As [`inputs`].
+#[inline(never)]
+unsafe fn set_apart<T: Set, const P: usize, const S: usize, const K: usize>(
+    token: T,
+    job: &mut Job<'_>,
+    part: Part,
+    chunk: Chunk,
+    turns: &mut [MaybeUninit<TurnSums>],
+) {
+    // SAFETY: passed on from the caller.
+    token.vectorize(
+        #[inline(always)]
+        || unsafe { set::<T, P, S, K>(token, job, part, chunk, turns) },
+    );
 }
