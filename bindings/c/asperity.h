@@ -1154,9 +1154,9 @@ uint32_t asp_version(void);
 
 /// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
-/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider, placed,
-/// touch. One sentence instead of a crash where a library lies beside another one's header; structs
-/// of an older header of this interface are understood.
+/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider,
+/// placed, touch. One sentence instead of a crash where a library lies beside another one's header;
+/// structs of an older header of this interface are understood.
 int32_t asp_check_abi(uint32_t abi, const uint32_t *sizes, uint32_t count);
 
 #ifdef __cplusplus

@@ -96,7 +96,7 @@ pub fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     Ok(BufReader::new(file))
 }
 
-/// What a picture is read from, as a trait object: decoders are compiled once, not for each.
+/// Reader of a picture, as a trait object: decoders are compiled once, not for each reader.
 trait Source: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Source for T {}

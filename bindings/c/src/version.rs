@@ -60,9 +60,9 @@ pub extern "C" fn asp_version() -> u32 {
 
 /// Tests whether a program and this library fit each other: `abi` is the header's `ASP_ABI`,
 /// `sizes` those of its structs in the order config, files, image, mode, body, surface, event,
-/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider, placed,
-/// touch. One sentence instead of a crash where a library lies beside another one's header; structs
-/// of an older header of this interface are understood.
+/// stats, port_config, point, force, player_config, player_report, pickup, motion, collider,
+/// placed, touch. One sentence instead of a crash where a library lies beside another one's header;
+/// structs of an older header of this interface are understood.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) -> i32 {
     enter(|| {

@@ -8,8 +8,8 @@
 //! | d′ | of m alternatives: p = ∫ φ(x − d′) Φ(x)^(m−1) dx; of ABX: p = Φ(d′/√2) Φ(d′/2) + Φ(−d′/√2) Φ(−d′/2) (Macmillan and Creelman 2005) | – |
 //! | threshold | greatest likelihood · s^−½ of γ + (1 − γ − λ) Φ(s (x − μ)) over μ and s; λ = 0.02 | profile likelihood |
 //!
-//! Answers at levels that a staircase has chosen make the likeliest slope too steep (Kaernbach 2001)
-//! and intervals of the threshold too narrow: without s^−½ they hold it in 0.90 of lots.
+//! Answers at levels that a staircase has chosen make the likeliest slope too steep (Kaernbach
+//! 2001) and intervals of the threshold too narrow: without s^−½ they hold it in 0.90 of lots.
 
 use asperity_dsp::rng::Rng;
 

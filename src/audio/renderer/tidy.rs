@@ -1,4 +1,4 @@
-//! Upkeep once every [`MAX_BLOCK`](asperity_surface::height_field::MAX_BLOCK) samples, and at the end.
+//! Upkeep once every [`MAX_BLOCK`](asperity_surface::height_field::MAX_BLOCK) samples, and the end.
 
 use super::Renderer;
 use crate::audio::voice::VoiceState;
