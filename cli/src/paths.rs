@@ -12,12 +12,13 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 24] = [
+const READ: [&str; 25] = [
     "strokes",
     "ring",
     "colour",
     "scene",
     "recording",
+    "recordings",
     "further",
     "merge",
     "mesh",
