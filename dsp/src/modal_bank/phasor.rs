@@ -110,7 +110,7 @@ impl PhasorGroup {
                 let gains: [f64; WIDE] = from_fn(|l| gains.map_or(1.0, |gains| f64::from(gains.0[from + l])));
                 let gains = f64x8::from_slice(s, &gains);
                 for (x, impulse) in driven[..out.len()].iter_mut().zip(&input.impulses[at..]) {
-                    *x = *x + gains * f64x8::splat(s, f64::from(*impulse));
+                    *x += gains * f64x8::splat(s, f64::from(*impulse));
                 }
             }
             let (lambda_re, lambda_im) = (part(&self.lambda[0]), part(&self.lambda[1]));
