@@ -31,8 +31,7 @@ pub(super) struct HapticChannel {
     /// Twice one filter: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
     low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
-    /// Sum of the contacts, m or m/s²; what is there of the stretch before where nobody has added
-    /// to it yet.
+    /// Sum of the contacts, m or m/s²; the stretch before where nothing was added yet.
     sum: [f64; MAX_BLOCK],
     added: bool,
 }
@@ -185,8 +184,7 @@ impl Bus {
 }
 
 impl Renderer {
-    /// Silence where nothing is written later: beyond the block's end, in outputs that nobody plays
-    /// on, and where means are added up.
+    /// Silence where nothing is written: beyond the block's end, in idle outputs, and under means.
     pub(super) fn clear_what_nobody_writes(
         &self,
         frames: usize,
@@ -208,8 +206,7 @@ impl Renderer {
         }
     }
 
-    /// By how much the peak limiters of channels and buses have turned down at most, dB; 0 for not
-    /// at all.
+    /// Most by which peak limiters of channels and buses have turned down, dB; 0 for not at all.
     #[must_use]
     pub fn limiter_db(&self) -> f64 {
         let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
