@@ -108,7 +108,11 @@ impl AsperityWorld {
 }
 
 impl AsperityWorld {
-    pub(crate) fn report(&mut self, what: &str, event: impl FnOnce() -> Result<ContactEvent, String>) -> bool {
+    pub(crate) fn report(
+        &mut self,
+        what: &str,
+        event: impl FnOnce() -> Result<ContactEvent, String>,
+    ) -> bool {
         let time_s = self.time_s;
         self.tried(what, |running| {
             running.scene.report(time_s, event()?).map_err(|refused| refused.reason.to_string())

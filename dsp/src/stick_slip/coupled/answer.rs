@@ -100,7 +100,7 @@ struct Pole {
 }
 
 impl Pole {
-    /// None where the mode is at or above the Nyquist frequency.
+    /// Pole of a mode; none at or above the Nyquist frequency.
     fn new(mode: &Mode, sample_rate_hz: f64) -> Result<Option<Self>, DesignError> {
         let rate = DesignError::check("sample_rate_hz", sample_rate_hz, "above 0 Hz", |r| r > 0.0)?;
         let f = DesignError::check("frequency_hz", mode.frequency_hz, "above 0 Hz", |f| f > 0.0)?;

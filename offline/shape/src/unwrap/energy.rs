@@ -78,10 +78,12 @@ pub(super) fn solve(sheet: &Sheet<'_>, phi: f64) -> Result<(Vec<Uv>, f64), Shape
         let Some(mut best) = parts.find(|(_, tried, _)| *tried < energy) else { break };
         while best.0 >= 1.0 {
             let further = tried(1.5 * best.0);
-            if further.1 >= best.1 {
+            // What is no number does not fall either.
+            if further.1 < best.1 {
+                best = further;
+            } else {
                 break;
             }
-            best = further;
         }
         let (_, lower, better) = best;
         let done = energy - lower <= ENOUGH * energy;
