@@ -128,6 +128,8 @@ parameters! {
             "Linear gain of impacts beside strokes, 1 = as mechanics says; missing: by the level policy where the bus's gain is, else 1";
         LEAST_TIME_S: "least_time_s", "s", limits::impact::LEAST_TIME_S,
             "Time within which an impact no stronger than the one before is dropped, and counted", or(0.0);
+        VARIATION: "variation", "", limits::impact::VARIATION,
+            "Spread of equal impacts: 0 = none, 1 = as real ones differ", or(0.0);
         MASS_KG: "mass_kg", "kg", limits::material::MASS_KG,
             "Mass, for friction that rings a body without shapes; a stock body's is known";
     }

@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
 use asperity::{
     AddError, AudioBus, Body, BodyId, BusId, ChannelId, Config, ContactEvent, ContactId, ContactSample,
@@ -249,6 +250,58 @@ fn a_body_has_four_further_listeners_and_its_own_bus_is_none_of_them() {
     // Another bus of its own ends them.
     scene.set_body_bus(body, BusId(6)).unwrap();
     (1..5).for_each(|bus| scene.set_body_send(body, BusId(bus), 0.5).unwrap());
+}
+
+/// A scene of three buses and a bar that plays on them as `sends` says.
+fn scene_of(sends: &str) -> Result<SceneFile, String> {
+    let buses = ["left", "right", "room"].map(|name| format!("[[audio]]\nname = \"{name}\"\ngain = 1.0\n"));
+    let body =
+        format!("[[body]]\nname = \"bar\"\nstock = \"bar\"\nsize_m = 0.3\nstrike_gain = 1.0\n{sends}\n");
+    let text = format!("{body}{}[[actuator]]\nfull_scale = 1e-4\n", buses.concat());
+    SceneFile::parse(&text, Path::new("s.toml")).map_err(|error| error.to_string())
+}
+
+/// Peaks of the buses under a blow.
+fn peaks_of(sends: &str) -> Vec<f64> {
+    let file = scene_of(sends).unwrap();
+    let mut engine = Engine::from_scene(&file, &Overrides::default()).unwrap();
+    engine.scene.report(0.0, strike(engine.names.bodies["bar"], 1.0)).unwrap();
+    render(&mut engine.renderer, 3, 8192, 256).iter().map(|bus| peak(bus)).collect()
+}
+
+#[test]
+fn a_scene_file_sends_a_body_to_several_buses_each_at_its_gain() {
+    let whole = peaks_of("bus = \"left\"");
+    assert!(whole[0] > 0.0 && whole[1..] == [0.0, 0.0]);
+    let sent = peaks_of("sends = { left = 0.2, right = 0.5, room = 0 }");
+    for (sent, gain) in sent.iter().zip([0.2, 0.5, 0.0]) {
+        assert!((sent - gain * whole[0]).abs() <= 1e-6 * whole[0], "{sent} of {}", whole[0]);
+    }
+    for (sends, words) in [
+        ("sends = { left = 1 }\nbus = \"left\"", ["sends", "beside bus"]),
+        ("sends = { lfet = 1 }", ["sends", "lfet"]),
+        ("sends = { left = -1 }", ["left", "0 to 1000"]),
+        ("sends = { left = 0 }", ["sends", "above 0"]),
+        ("sends = 0.5", ["sends", "table"]),
+    ] {
+        let error = scene_of(sends).unwrap_err();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    }
+}
+
+#[test]
+fn a_changed_scene_file_changes_what_a_body_sends() {
+    let files = ["sends = { left = 1, right = 0.5 }", "sends = { left = 0.5, room = 0.25 }"].map(scene_of);
+    let [before, after] = files.map(Result::unwrap);
+    let mut engine = Engine::from_scene(&before, &Overrides::default()).unwrap();
+    engine.scene.apply(&mut engine.names, &before, &after, &Overrides::default()).unwrap();
+    render(&mut engine.renderer, 3, 8192, 256);
+    engine.scene.report(0.2, strike(engine.names.bodies["bar"], 1.0)).unwrap();
+    let peaks: Vec<f64> = render(&mut engine.renderer, 3, 8192, 256).iter().map(|bus| peak(bus)).collect();
+    let whole = peaks_of("bus = \"left\"")[0];
+    for (heard, gain) in peaks.iter().zip([0.5, 0.0, 0.25]) {
+        assert!((heard - gain * whole).abs() <= 1e-5 * whole, "{peaks:?} of {whole}");
+    }
 }
 
 #[test]

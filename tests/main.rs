@@ -104,5 +104,6 @@ mod threads;
 #[path = "../examples/real_input/trajectories.rs"]
 mod trajectories;
 mod traps;
+mod variation;
 mod waves_are_heard;
 mod what_strokes;

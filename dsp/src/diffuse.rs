@@ -39,6 +39,7 @@ mod design;
 
 pub use design::{BAND_ERB, DiffuseBand, DiffuseGroup, DiffusePart, band_edges_hz};
 
+use crate::rng::hash_u32;
 use crate::simd::{Level, Set, at_level};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, u32x16};
@@ -88,6 +89,8 @@ pub struct DiffuseBank<G, S> {
     age: Option<u64>,
     /// Something rises: the third resonators move.
     rises: bool,
+    /// Number of the noise that it wakes with.
+    take: u32,
 }
 
 /// Impulses of a stretch, N·s a sample, each as long as the stretch.
@@ -102,7 +105,7 @@ pub struct DiffuseInput<'a> {
 impl<G: AsRef<[DiffuseGroup]>, S: AsMut<[DiffuseState]>> DiffuseBank<G, S> {
     /// A bank at rest; there must be as many states as groups.
     pub const fn new(level: Level, groups: G, states: S) -> Self {
-        Self { level, groups, states, age: None, rises: false }
+        Self { level, groups, states, age: None, rises: false, take: 0 }
     }
 
     /// Tests whether nothing sounds.
@@ -115,6 +118,12 @@ impl<G: AsRef<[DiffuseGroup]>, S: AsMut<[DiffuseState]>> DiffuseBank<G, S> {
     pub fn silence(&mut self) {
         self.states.as_mut().fill(DiffuseState::REST);
         (self.age, self.rises) = (None, false);
+    }
+
+    /// Chooses the noise with which it wakes from now on: each number stands for another one, 0 for
+    /// that of the groups' own seeds.
+    pub const fn wake_with(&mut self, take: u32) {
+        self.take = take;
     }
 
     /// Adds the answer to `input` to `out`.
@@ -147,8 +156,10 @@ impl<G: AsRef<[DiffuseGroup]>, S: AsMut<[DiffuseState]>> DiffuseBank<G, S> {
 
     fn wake(&mut self) {
         for (group, state) in self.groups.as_ref().iter().zip(self.states.as_mut()) {
-            *state = DiffuseState { random: group.seeds, ..DiffuseState::REST };
-            for (lane, seed) in group.seeds.iter().enumerate() {
+            let take = self.take;
+            let seeds = group.seeds.map(|seed| if take == 0 { seed } else { hash_u32(seed ^ take) });
+            *state = DiffuseState { random: seeds, ..DiffuseState::REST };
+            for (lane, seed) in seeds.iter().enumerate() {
                 let sign = if seed & 1 == 0 { 1.0 } else { -1.0 };
                 (state.v[0][lane], state.w[0][lane]) = (sign, sign);
             }

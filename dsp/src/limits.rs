@@ -137,6 +137,8 @@ pub mod impact {
     pub const GAIN: Range = Range::new(0.0, 1e3, "0 to 1000");
     /// Least time between equally strong impacts on a body.
     pub const LEAST_TIME_S: Range = Range::new(0.0, 60.0, "0 to 60 s");
+    /// Spread of equal impacts on a body.
+    pub const VARIATION: Range = Range::new(0.0, 1.0, "0 to 1");
     /// Factor of a contact's priority.
     pub const IMPORTANCE: Range = Range::new(0.0, 1e6, "0 to 1e6");
 }

@@ -10,3 +10,4 @@ pub(crate) mod scene;
 pub(crate) mod silence;
 pub(crate) mod slips;
 pub(crate) mod tip;
+pub(crate) mod variation;

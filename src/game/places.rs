@@ -48,6 +48,11 @@ impl<T> Places<T> {
         slot.occupant.as_ref()
     }
 
+    /// The occupant of that name, to be changed.
+    pub(crate) fn get_mut(&mut self, name: SlotKey) -> Option<&mut T> {
+        self.slot(name)?.occupant.as_mut()
+    }
+
     /// All occupants, with their names.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (SlotKey, &T)> {
         self.slots.iter().enumerate().filter_map(|(index, slot)| {

@@ -25,6 +25,7 @@ use crate::game::levels::{BodyLevel, Levels, Trials};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
+use crate::game::variation::Variation;
 use crate::link::message::{Made, Message, Retired};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
@@ -147,6 +148,7 @@ pub(crate) struct KnownBody {
     /// Its mass is known.
     weighs: bool,
     level: BodyLevel,
+    variation: Option<Variation>,
 }
 
 impl KnownBody {

@@ -172,7 +172,7 @@ impl<'a> New<'a> {
         }
         for (BodyEntry { name, .. }, body) in self.bodies {
             let word = match names.bodies.get(name) {
-                Some(id) => scene.replace_body(*id, body).map(|()| "changed"),
+                Some(id) => scene.replace_body_and_sends(*id, body).map(|()| "changed"),
                 None => scene.add_body(body).map(|id| {
                     names.bodies.insert(name.clone(), id);
                     "added"

@@ -164,10 +164,8 @@ impl Trials {
         };
         let bus_of = |name: &String| {
             let body = file.bodies.iter().find(|body| body.name == *name && !is_calibrated(name))?;
-            // A body that names none plays on the first.
-            body.bus
-                .as_ref()
-                .map_or(Some(0), |bus| file.audio.iter().position(|b| b.name.as_ref() == Some(bus)))
+            // Where it is loudest.
+            Some(body.plays_on(&file.audio)[0].0)
         };
         let mut trials = Self {
             log: ContactLog { lines: Vec::new() },
@@ -176,8 +174,8 @@ impl Trials {
             strikes_s: [0.0; 2],
             bursts: Vec::new(),
         };
-        for bus in file.bodies.iter().filter_map(|body| bus_of(&body.name)) {
-            trials.levelled[bus] = true;
+        for body in file.bodies.iter().filter(|body| !is_calibrated(&body.name)) {
+            body.plays_on(&file.audio).iter().for_each(|(bus, _)| trials.levelled[*bus] = true);
         }
         let probes = std::iter::once(None).chain(file.probes.iter().map(|(name, _)| Some(name.as_str())));
         let probes: Vec<Option<&str>> = probes.collect();

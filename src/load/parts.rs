@@ -60,9 +60,10 @@ impl Scene {
         overrides: &Overrides<'_>,
     ) -> Result<Body, FileError> {
         let table = named(table, "body")?;
-        if table.contains_key("bus") {
+        if let Some(key) = ["bus", "sends"].into_iter().find(|key| table.contains_key(*key)) {
             let right = "leave it out, and give the number of the bus beside the table";
-            return Err(FileError::new("body: bus", "is a name, and a body by itself knows no names", right));
+            let what = "goes by names, and a body by itself knows none";
+            return Err(FileError::new(format!("body: {key}"), what, right));
         }
         let entry = BodyEntry::read(table, folder)?;
         self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[], self.strike_gain)

@@ -8,7 +8,7 @@ use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
 use crate::files::{FileError, Files};
 use crate::model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};
-use crate::model::body::Body;
+use crate::model::body::{Body, Sends};
 use crate::model::bus::BusId;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
@@ -45,23 +45,26 @@ impl<'a> Loader<'a> {
             let residual = model.residual.take();
             model = model.with_residual(residual, gain).map_err(FileError::from_error)?;
         }
-        let bus =
-            entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
-        let bus = bus.unwrap_or(0);
+        let on = entry.plays_on(audio);
+        let (bus, gain) = on[0];
         if let Some(pascals) = audio.get(bus).and_then(|bus| bus.pascals_at_full_scale)
             && model.unit == Unit::PascalsAtOneMetre
         {
             // A gain that nobody wrote is there for the other bodies of the bus.
             let found = gains.get(bus).filter(|_| audio[bus].gain.is_none());
-            let gain = found.filter(|gain| **gain > 0.0).unwrap_or(&1.0);
-            model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::from_error)?;
+            let policy = found.filter(|gain| **gain > 0.0).unwrap_or(&1.0);
+            model = model.with_gain(1.0 / (pascals * policy)).map_err(FileError::from_error)?;
         }
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
         let body = Body::new(model).material(material).bus(BusId(bus));
         let strike_gain = Some(entry.strike_gain.unwrap_or(strike_gain));
-        let least_time_s = entry.least_time_s.unwrap_or(0.0);
+        // The gain of a body counts on all of its buses.
+        let further = on[1..].iter().map(|(bus, share)| Some((*bus, share / gain)));
+        let mut sends = Sends::default();
+        sends.iter_mut().zip(further).for_each(|(send, further)| *send = further);
+        let (least_time_s, variation) = (entry.least_time_s.unwrap_or(0.0), entry.variation.unwrap_or(0.0));
         let (mass_kg, pickups) = (entry.mass_kg.or_else(stock_kg), entry.pickups.clone());
-        Ok(Body { mass_kg, strike_gain, least_time_s, pickups, ..body })
+        Ok(Body { mass_kg, strike_gain, least_time_s, pickups, gain, sends, variation, ..body })
     }
 
     /// Settings that all sources of a surface share.

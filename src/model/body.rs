@@ -34,6 +34,7 @@ pub struct Body {
     pub(crate) mass_kg: Option<f64>,
     pub(crate) least_time_s: f64,
     pub(crate) sends: Sends,
+    pub(crate) variation: f64,
     pub(crate) pickups: Vec<Pickup>,
 }
 
@@ -53,6 +54,7 @@ impl Body {
             mass_kg: None,
             least_time_s: 0.0,
             sends: Sends::default(),
+            variation: 0.0,
             pickups: Vec::new(),
         }
     }
@@ -105,6 +107,19 @@ impl Body {
     #[must_use]
     pub fn least_time_s(mut self, least_time_s: f64) -> Self {
         self.least_time_s = least_time_s;
+        self
+    }
+
+    /// Spread of equal impacts, 0–1, so that a repeated blow is not the same sound again: 0 for none;
+    /// at 1 they differ as real ones do. A body with strike positions
+    /// ([`ModalModel::with_positions`], `asperity fit --family`) goes from the one asked for towards
+    /// another of them, never twice the same; a body with shapes is struck about the place asked
+    /// for, within some hundredths of its size; any other has takes of its own, whose modes differ
+    /// as they do some hundredths of its size away, and blows that are a tenth harder or softer.
+    /// Seeded by [`Config::seed`](crate::Config::seed) and the count of impacts on the body.
+    #[must_use]
+    pub fn variation(mut self, variation: f64) -> Self {
+        self.variation = variation;
         self
     }
 

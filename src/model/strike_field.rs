@@ -104,6 +104,11 @@ impl StrikeField {
         std::array::from_fn(|axis| (0..3).map(|i| f64::from(place.weights[i]) * corner(i)[axis]).sum())
     }
 
+    /// Place that the modes' own amplitudes belong to, m.
+    pub(crate) fn struck_point_m(&self) -> [f64; 3] {
+        self.shapes.points_m[self.shapes.struck_point]
+    }
+
     /// Longest side of the box about the body, m.
     #[must_use]
     pub fn size_m(&self) -> f64 {

@@ -47,6 +47,8 @@ pub(crate) struct BodySlot {
     /// Number of its groups that are driven at each level of modes left out.
     levels: SheddingLevels,
     places: Vec<Place>,
+    /// Number of these that are the body's own; the others are takes that were made.
+    positions: usize,
     /// For a body that can be touched anywhere.
     field: Option<BodyField>,
     /// For a body that can be rubbed, and the gains of its only position.
@@ -151,6 +153,7 @@ impl BodySlot {
         Ok(Self {
             bank: ModalBank::new(kernel, groups, states).in_sections(&levels),
             levels,
+            positions: places.len(),
             places,
             field,
             rub,
@@ -164,15 +167,15 @@ impl BodySlot {
         })
     }
 
-    /// Its impacts sound so much louder than mechanics says, linear.
-    pub(crate) fn struck_with(self, strike_gain: f64) -> Self {
-        Self { strike_gain, ..self }
+    /// Its impacts sound so much louder than mechanics says, linear; the first `positions` of its
+    /// model are its own.
+    pub(crate) fn struck_with(self, strike_gain: f64, positions: usize) -> Self {
+        Self { strike_gain, positions, ..self }
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
     fn place(&mut self, position: usize) -> &mut Place {
-        let last = self.places.len() - 1;
-        &mut self.places[position.min(last)]
+        &mut self.places[position.min(self.positions - 1)]
     }
 
     /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as
@@ -190,25 +193,27 @@ impl BodySlot {
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
         let driven = self.levels[mode_level];
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
-        let missing = match anywhere {
-            Some((field, place)) => field.strike(place, pulse, stamp, driven),
-            None => {
-                let place = self.place(spot.position);
-                place.bus.deposit(pulse, stamp.sample(), stamp.fraction(), sample_rate_hz);
-                place.first_samples[mode_level]
-            }
-        };
-        if let Some(pickups) = &mut self.pickups {
-            let gains = match (&self.field, &spot.place) {
-                (Some(field), Some(_)) => field.struck_gains(),
-                _ => &self.places[spot.position.min(self.places.len() - 1)].gains,
-            };
-            pickups.strike(gains, own, stamp, sample_rate_hz);
-        }
         let (sample, offset) = (stamp.sample(), stamp.fraction());
         // With the modes, which sound the ring's latency later.
         let sounds = sample + KERNEL_LATENCY as u64;
-        self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
+        if let Some((field, place)) = anywhere {
+            let missing = field.strike(place, pulse, stamp, driven);
+            self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
+            if let Some(pickups) = &mut self.pickups {
+                pickups.strike(field.struck_gains(), own, stamp, sample_rate_hz);
+            }
+        } else {
+            for (position, share) in spot.shares(self.positions) {
+                let of = |whole: &HertzPulse| HertzPulse { impulse_n_s: share * whole.impulse_n_s, ..*whole };
+                let (place, part) = (&mut self.places[position], of(pulse));
+                place.bus.deposit(&part, sample, offset, sample_rate_hz);
+                let missing = place.first_samples[mode_level];
+                self.early.write(end, |early| missing.deposit(&part, early, sample, offset, sample_rate_hz));
+                if let Some(pickups) = &mut self.pickups {
+                    pickups.strike(&place.gains, &of(own), stamp, sample_rate_hz);
+                }
+            }
+        }
         if let Some(click) = &self.click {
             let samples = click.samples_of(pulse, sample_rate_hz);
             if samples > 0 {
@@ -220,7 +225,7 @@ impl BodySlot {
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(sounds, pulse.impulse_n_s);
         if let Some(diffuse) = &mut self.diffuse {
-            diffuse.strike(pulse, stamp, sample_rate_hz);
+            diffuse.strike(pulse, spot.seed, stamp, sample_rate_hz);
         }
     }
 

@@ -65,7 +65,8 @@ impl DiffuseSeat {
     }
 
     /// Adds an impact whose contact begins at `stamp`.
-    pub(crate) fn strike(&mut self, pulse: &HertzPulse, stamp: Stamp, sample_rate_hz: f64) {
+    pub(crate) fn strike(&mut self, pulse: &HertzPulse, seed: u32, stamp: Stamp, sample_rate_hz: f64) {
+        self.bank.wake_with(seed);
         self.bus.deposit(pulse, stamp.sample(), stamp.fraction(), sample_rate_hz);
     }
 

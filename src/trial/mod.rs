@@ -118,6 +118,7 @@ fn alone(body: &Body) -> Body {
         strike_gain: None,
         least_time_s: 0.0,
         sends: Default::default(),
+        variation: 0.0,
         ..body.clone()
     }
 }

@@ -62,7 +62,7 @@ impl Gathering<'_> {
             self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
         }
         if let Some((body, slot)) = touched {
-            let spot = StrikePoint { place: self.placed[index], position: slot.surface.strike_position };
+            let spot = StrikePoint::new(self.placed[index], slot.surface.strike_position);
             self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
         }
     }
@@ -156,5 +156,5 @@ fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> St
         let direction = std::array::from_fn(|i| (u * along_u[i] + v * along_v[i]) as f32);
         StrikePlace { direction, ..place }
     });
-    StrikePoint { place, position: surface.strike_position }
+    StrikePoint::new(place, surface.strike_position)
 }

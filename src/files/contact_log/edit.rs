@@ -156,6 +156,9 @@ pub struct LogBody {
     /// Least time between equally strong impacts, s; missing: 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub least_time_s: f64,
+    /// Spread of equal impacts, 0–1; missing: 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub variation: f64,
     /// Its mass, if it is known, kg.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
@@ -166,8 +169,8 @@ fn one() -> f64 {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_zero(time_s: &f64) -> bool {
-    *time_s == 0.0
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
@@ -192,8 +195,8 @@ pub struct LogSurface {
 impl From<&Body> for LogBody {
     fn from(body: &Body) -> Self {
         let modes = serde_json::from_str(&body.model.to_json()).unwrap_or_default();
-        let Body { material, bus, gain, strike_gain, least_time_s, mass_kg, .. } = *body;
-        Self { modes, material, bus, gain, strike_gain, least_time_s, mass_kg }
+        let Body { material, bus, gain, strike_gain, least_time_s, variation, mass_kg, .. } = *body;
+        Self { modes, material, bus, gain, strike_gain, least_time_s, variation, mass_kg }
     }
 }
 
@@ -204,7 +207,7 @@ impl LogBody {
     /// When the modes are none.
     pub(crate) fn body(&self) -> Result<Body, crate::model::modal_model::ModalModelError> {
         let body = Body::new(ModalModel::parse(&self.modes.to_string())?);
-        let Self { material, bus, gain, strike_gain, least_time_s, mass_kg, .. } = *self;
-        Ok(Body { material, bus, gain, strike_gain, least_time_s, mass_kg, ..body })
+        let Self { material, bus, gain, strike_gain, least_time_s, variation, mass_kg, .. } = *self;
+        Ok(Body { material, bus, gain, strike_gain, least_time_s, variation, mass_kg, ..body })
     }
 }

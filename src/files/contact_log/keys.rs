@@ -59,6 +59,7 @@ const BODY: &[Key] = &[
     ("gain", Holds::Any),
     ("strike_gain", Holds::Any),
     ("least_time_s", Holds::Any),
+    ("variation", Holds::Any),
     ("mass_kg", Holds::Any),
 ];
 const SURFACE: &[Key] =

@@ -2,10 +2,12 @@
 
 use super::fields::{self, Fields};
 use crate::files::FileError;
+use crate::model::body::MAX_SENDS;
 use crate::model::material::Material;
 use crate::model::pickup::Pickup;
 use crate::model::stock::Stock;
 use crate::parameters;
+use asperity_dsp::limits;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
@@ -32,8 +34,12 @@ pub struct BodyEntry {
     pub least_time_s: Option<f64>,
     /// Its mass, kg; none = a stock body's own, or unknown.
     pub mass_kg: Option<f64>,
-    /// Name of the bus it plays on; none = the first.
+    /// Spread of equal impacts; none = 0.
+    pub variation: Option<f64>,
+    /// Name of the bus it plays on; none = the first, or those of `sends`.
     pub bus: Option<String>,
+    /// Names of the buses it plays on, and how loud on each, linear; empty = on `bus`.
+    pub sends: Vec<(String, f64)>,
     /// Pickups on it.
     pub pickups: Vec<Pickup>,
 }
@@ -54,6 +60,8 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         strike_gain: fields.number(&parameters::body::STRIKE_GAIN)?,
         least_time_s: fields.number(&parameters::body::LEAST_TIME_S)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,
+        variation: fields.number(&parameters::body::VARIATION)?,
+        sends: read_sends(&mut fields)?,
         bus: fields.text("bus")?,
         pickups: Vec::new(),
     };
@@ -66,6 +74,23 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
     }
     fields.finish()?;
     Ok(body)
+}
+
+/// `sends`: a table from buses to gains.
+fn read_sends(fields: &mut Fields) -> Result<Vec<(String, f64)>, FileError> {
+    let Some(table) = fields.table("sends")? else { return Ok(Vec::new()) };
+    let gains = table.numbers_by_name(limits::impact::GAIN)?;
+    let audible = |gains: &[(String, f64)]| gains.iter().filter(|(_, gain)| *gain > 0.0).count();
+    let most = MAX_SENDS + 1;
+    let right = format!("name 1 to {most} buses of [[audio]] with a gain each, one of them above 0");
+    if fields.has("bus") {
+        return Err(fields.refuse("sends", "stands beside bus", "write one of them"));
+    }
+    if gains.len() > MAX_SENDS + 1 || audible(&gains) == 0 {
+        let what = format!("names {} buses, {} of them above 0", gains.len(), audible(&gains));
+        return Err(fields.refuse("sends", what, right));
+    }
+    Ok(gains)
 }
 
 /// `stock` and the `size_m` that it needs.

@@ -227,6 +227,16 @@ impl Fields {
         }
     }
 
+    /// Numbers of a table whose keys are names, each in the range.
+    pub fn numbers_by_name(self, range: Range) -> Result<Vec<(String, f64)>, FileError> {
+        let read = |(name, value): (&String, &Value)| {
+            let number = as_number(value).filter(|number| range.holds(*number));
+            let refused = || self.refuse(name, format!("{} is refused", shown(value)), right(range));
+            number.map(|number| (name.clone(), number)).ok_or_else(refused)
+        };
+        self.table.iter().map(read).collect()
+    }
+
     /// An array of tables, `[[key]]`.
     pub fn tables(&mut self, key: &'static str) -> Result<Vec<Self>, FileError> {
         let Some(value) = self.take(key) else { return Ok(Vec::new()) };

@@ -111,6 +111,18 @@ impl SurfaceEntry {
 }
 
 impl BodyEntry {
+    /// Indices of the buses that it plays on, and how loud on each; the loudest first.
+    pub(crate) fn plays_on(&self, audio: &[AudioEntry]) -> Vec<(usize, f64)> {
+        let index = |name: &String| audio.iter().position(|bus| bus.name.as_ref() == Some(name));
+        let named = self.sends.iter().filter(|(_, gain)| *gain > 0.0);
+        let mut on: Vec<_> = named.filter_map(|(bus, gain)| Some((index(bus)?, *gain))).collect();
+        on.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+        if on.is_empty() {
+            on.push((self.bus.as_ref().and_then(index).unwrap_or(0), 1.0));
+        }
+        on
+    }
+
     /// Reads one table of `[[body]]` by itself.
     pub(crate) fn read(table: toml::Table, folder: &Path) -> Result<Self, FileError> {
         body::read(Fields::new(table, "body"), folder)
@@ -223,13 +235,15 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
     }
     let buses: Vec<&str> = scene.audio.iter().filter_map(|bus| bus.name.as_deref()).collect();
     for body in &scene.bodies {
-        if let Some(bus) = body.bus.as_deref().filter(|bus| !buses.contains(bus)) {
+        let named =
+            body.bus.iter().map(|bus| ("bus", bus)).chain(body.sends.iter().map(|(bus, _)| ("sends", bus)));
+        for (key, bus) in named.filter(|(_, bus)| !buses.contains(&bus.as_str())) {
             let known: Vec<String> = buses.iter().map(|name| format!("\"{name}\"")).collect();
             let right = match known.as_slice() {
                 [] => "name a bus under [[audio]]".to_owned(),
                 _ => format!("buses of this scene: {}", fields::any_of(&known)),
             };
-            let at = format!("body \"{}\": bus", body.name);
+            let at = format!("body \"{}\": {key}", body.name);
             return Err(FileError::new(at, format!("\"{bus}\" is unknown"), right));
         }
     }

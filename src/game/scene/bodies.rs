@@ -3,6 +3,7 @@
 use super::{KnownBody, Scene};
 use crate::files::contact_log::LogEdit;
 use crate::game::levels::{BodyLevel, Levels};
+use crate::game::variation::{Variation, with_takes};
 use crate::link::message::{Made, Message, Retired};
 use crate::model::bad_value::within;
 use crate::model::body::{Body, MAX_SENDS, Sends};
@@ -36,6 +37,9 @@ impl Scene {
         self.set_body(id, &body)?;
         self.given.insert(id, body.clone());
         self.note(|names| LogEdit::AddBody { body: names.body(id), is: (&body).into() });
+        for (bus, gain) in body.sends.into_iter().flatten() {
+            self.note(|names| LogEdit::BodySend { body: names.body(id), bus, gain });
+        }
         Ok(id)
     }
 
@@ -55,6 +59,22 @@ impl Scene {
         self.set_body(id, &body)?;
         self.given.insert(id, body.clone());
         self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
+        Ok(())
+    }
+
+    /// [`replace_body`](Self::replace_body), and what it sends to further buses is the new one's.
+    pub(crate) fn replace_body_and_sends(&mut self, id: BodyId, body: Body) -> Result<(), AddError> {
+        let sends = body.sends;
+        self.replace_body(id, body)?;
+        let Some(given) = self.given.get(&id) else { return Ok(()) };
+        let (own, old) = (given.bus, given.sends);
+        let gone =
+            old.iter().flatten().filter(|(bus, _)| !sends.iter().flatten().any(|(kept, _)| kept == bus));
+        let gone: Vec<(usize, f64)> = gone.map(|(bus, _)| (*bus, 0.0)).collect();
+        for (bus, gain) in gone.into_iter().chain(sends.into_iter().flatten()).filter(|(bus, _)| *bus != own)
+        {
+            self.set_body_send(id, BusId(bus), gain)?;
+        }
         Ok(())
     }
 
@@ -149,6 +169,7 @@ impl Scene {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
         within("least_time_s", body.least_time_s, limits::impact::LEAST_TIME_S)?;
+        let amount = within("variation", body.variation, limits::impact::VARIATION)?;
         let sends = body.sends;
         let strike_gain = within("strike_gain", level.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
@@ -160,18 +181,24 @@ impl Scene {
         let heard = audible.as_ref().unwrap_or(model);
         let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
         let pickups = self.placed_pickups(body, field.as_deref())?;
+        let variation = Variation::new(amount, model, self.config.seed);
         let body = if let Some(Made { slot, of }) = rested {
             Made { slot: slot.rested(), of }
         } else {
             let loudest_db_spl = self.loudest_db_spl(body, strike_gain);
-            let at_level = Levels::model_at(heard, level.gain)?;
+            let heard = with_takes(heard, amount, self.config.seed);
+            let at_level = Levels::model_at(&heard, level.gain)?;
             let seeded = (self.kernel, self.config.seed);
             let slot = BodySlot::new(&at_level, mass_kg, loudest_db_spl, seeded, (rate, inner), &pickups)?;
-            Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
+            Made {
+                slot: Box::new(slot.struck_with(strike_gain, model.position_count())),
+                of: Arc::new(body.clone()),
+            }
         };
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        let known = KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some(), level };
+        let known =
+            KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some(), level, variation };
         if rubs_on && !known.can_be_rubbed() {
             return Err(AddError::CannotRub);
         }

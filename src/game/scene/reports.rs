@@ -3,6 +3,7 @@
 
 use super::Scene;
 use crate::game::silence::SilenceReason;
+use crate::game::variation::{Variation, Varied};
 use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
@@ -11,7 +12,6 @@ use crate::model::error::{Refusal, ReportError};
 use crate::model::event::{ChannelId, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
-use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::LONGEST_CONTACT_S;
 use crate::resource::strike_point::StrikePoint;
 
@@ -307,7 +307,9 @@ impl Scene {
     }
 
     fn send_impact(&mut self, stamp: Stamp, impact: &Impact, ticket: u32) -> Result<(), Refusal> {
-        let pulse = self.pulse(impact).ok_or(Refusal::UnknownBody)?;
+        let mut pulse = self.pulse(impact).ok_or(Refusal::UnknownBody)?;
+        let varied = self.varied(impact);
+        pulse.contact_time_s = (varied.softer * pulse.contact_time_s).min(LONGEST_CONTACT_S);
         let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
         if pulse.impulse_n_s == 0.0 {
             return Ok(());
@@ -326,7 +328,7 @@ impl Scene {
             stamp,
             epoch: self.clock.epoch(),
             body: impact.body.index(),
-            spot: StrikePoint { place: self.struck(impact), position: impact.position },
+            spot: self.struck(impact, &varied),
             other,
             holder: impact.holder.map(BodyId::index),
             felt,
@@ -343,10 +345,24 @@ impl Scene {
         self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
-    /// Place of an impact on a body that has shapes.
-    fn struck(&self, impact: &Impact) -> Option<StrikePlace> {
-        let field = self.bodies.get(impact.body.0)?.field.as_ref()?;
-        field.place(impact.at_m?, impact.direction)
+    /// Differences of an impact from what was reported, where those on its body vary.
+    fn varied(&mut self, impact: &Impact) -> Varied {
+        let variation = self.bodies.get_mut(impact.body.0).and_then(|body| body.variation.as_mut());
+        variation.map_or(Varied::NONE, Variation::draw)
+    }
+
+    /// Place of an impact on its body.
+    fn struck(&self, impact: &Impact, varied: &Varied) -> StrikePoint {
+        let field = self.bodies.get(impact.body.0).and_then(|body| body.field.as_ref());
+        let place = field.and_then(|field| {
+            let asked_m =
+                impact.at_m.or_else(|| (*varied != Varied::NONE).then(|| field.struck_point_m()))?;
+            let size_m = field.size_m();
+            let at_m = [0, 1, 2].map(|axis| asked_m[axis] + size_m * varied.aside[axis]);
+            field.place(at_m, impact.direction)
+        });
+        let of = StrikePoint::new(place, impact.position);
+        StrikePoint { other: varied.other, seed: varied.seed, ..of }
     }
 
     pub(super) fn send_event(&mut self, message: Message) -> Result<(), Refusal> {

@@ -76,6 +76,7 @@ impl Scene {
             field: None,
             weighs: false,
             level: BodyLevel::SILENT,
+            variation: None,
         };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let rubs = surface.rubs().is_some();
