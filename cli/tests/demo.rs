@@ -16,6 +16,27 @@ fn rms(samples: &[f32]) -> f64 {
     (samples.iter().map(|&sample| f64::from(sample).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
 }
 
+/// Three knocks each on four bodies: heard, and what does not ring is gone between them.
+fn every_knock_is_heard(demo: &Path) {
+    let audio = samples(&demo.join("knuckle.audio.wav"));
+    let log = fs::read_to_string(demo.join("knuckle.jsonl")).unwrap();
+    let lines = log.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let mut knocks = 0;
+    for knock in lines {
+        knocks += 1;
+        let from = |after_s: f64| ((knock["t"].as_f64().unwrap() + after_s) * 44_100.0) as usize;
+        let [at_first, later] =
+            [0.0, 0.15].map(|s| 20.0 * rms(&audio[from(s)..from(s + 0.05)]).max(1e-9).log10());
+        let body = knock["body"].as_str().unwrap();
+        println!("{body}: {at_first:.1} dBFS, then {later:.1}");
+        assert!(at_first > -60.0, "{body}: {at_first} dB");
+        if ["box", "curtain"].contains(&body) {
+            assert!(later < at_first - 30.0, "{body}: {at_first}, then {later} dB");
+        }
+    }
+    assert_eq!(knocks, 12);
+}
+
 #[test]
 fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
     let folder = tempfile::tempdir().unwrap();
@@ -42,7 +63,7 @@ fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
         assert!(audio.iter().chain(&haptic).all(|sample| sample.is_finite()), "{name}");
         let peak = audio.iter().fold(0.0f32, |peak, sample| peak.max(sample.abs()));
         assert!((0.02..=1.0).contains(&peak), "{name} peaks at {peak}");
-        if !["struck", "answering", "bowl"].contains(&name) {
+        if !["struck", "knuckle", "answering", "bowl"].contains(&name) {
             let peak = haptic.iter().fold(0.0f32, |peak, sample| peak.max(sample.abs()));
             assert!((0.02..=1.0).contains(&peak), "{name} is felt with {peak}");
         }
@@ -53,6 +74,7 @@ fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
         );
     }
     assert!(scenes >= 8, "{scenes} scenes");
+    every_knock_is_heard(&demo);
     let plate = |name: &str| samples(&demo.join(format!("{name}.audio.wav")));
     let (matte_first, shiny_first) = (plate("matte-shiny"), plate("shiny-matte"));
     let slow = 13_000..35_000;

@@ -146,6 +146,7 @@ namespace UnityEngine
     [AttributeUsage(AttributeTargets.Field)] public class TooltipAttribute : Attribute { public TooltipAttribute(string words) { } }
     [AttributeUsage(AttributeTargets.Class)] public class RequireComponent : Attribute { public RequireComponent(Type type) { } }
     [AttributeUsage(AttributeTargets.Field)] public class TextAreaAttribute : Attribute { }
+    [AttributeUsage(AttributeTargets.Field)] public class RangeAttribute : Attribute { public RangeAttribute(float least, float most) { } }
     [AttributeUsage(AttributeTargets.Class)] public class DefaultExecutionOrderAttribute : Attribute { public DefaultExecutionOrderAttribute(int order) { } }
 }
 

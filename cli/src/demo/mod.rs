@@ -10,6 +10,7 @@ mod bowl;
 mod demo_scene;
 mod gallery;
 mod index;
+mod knuckle;
 mod loudness;
 pub mod plates;
 pub mod scenes;

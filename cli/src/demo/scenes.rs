@@ -8,13 +8,14 @@ use asperity::{ModalModel, Mode};
 use asperity_plot::pixels;
 
 /// Seconds before the first event, so that a player that fades in cuts nothing off.
-const LEAD_S: f64 = 0.15;
+pub const LEAD_S: f64 = 0.15;
 
 /// Every scene of the demo, in the order of the index.
 #[must_use]
 pub fn scenes() -> Vec<DemoScene> {
     let mut scenes: Vec<DemoScene> = PLATES.iter().map(plate_scene).collect();
     scenes.push(struck());
+    scenes.push(super::knuckle::scene());
     scenes.push(scraped());
     scenes.push(super::touchers::scene());
     scenes.extend(super::gallery::scenes());
@@ -136,7 +137,8 @@ pub fn bar_modes() -> ModalModel {
     }
 }
 
-fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m): (f64, f64)) -> LogLine {
+/// An impact on a body by something of a material, with its mass and radius, kg and m.
+pub fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m): (f64, f64)) -> LogLine {
     LogLine {
         t,
         event: LogEvent::Impact {

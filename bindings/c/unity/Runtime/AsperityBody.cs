@@ -21,6 +21,8 @@ namespace Asperity
         public float StrikeGain = -1f;
         [Tooltip("An impact that comes sooner after one that was as strong is dropped, s; 0 drops none")]
         public float LeastTimeS = 0f;
+        [Tooltip("Spread of equal blows; 0: each sounds like the last, 1: they differ as real ones do")]
+        [Range(0f, 1f)] public float Variation = 0f;
         [Tooltip("Weaker collisions are not reported, N s")]
         public float LeastImpulseNS = 1e-4f;
 
@@ -48,7 +50,8 @@ namespace Asperity
             scene = world.Scene;
             Body = Surface = 0;
             var body = new Body { SizeM = SizeM, Material = Made, StrikeGain = StrikeGain < 0f ? double.NaN : StrikeGain };
-            if (LeastTimeS > 0f) body.Table = FormattableString.Invariant($"least_time_s = {(double)LeastTimeS:0.0#####}");
+            if (LeastTimeS > 0f) body.Table = FormattableString.Invariant($"least_time_s = {(double)LeastTimeS:0.0#####}\n");
+            if (Variation > 0f) body.Table += FormattableString.Invariant($"variation = {(double)Variation:0.0#####}\n");
             if (ModesJson != null) body.ModesJson = ModesJson.text; else body.Stock = Stock;
             Body = scene.Add(body);
             Surface = scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
