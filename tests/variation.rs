@@ -24,7 +24,7 @@ fn family() -> ModalModel {
         model.modes.iter().enumerate().map(|(i, mode)| gain(i) * mode.amplitude).collect()
     };
     let takes = (1..4).map(take).collect();
-    model.with_positions(takes).unwrap()
+    ModalModel { takes: true, ..model.with_positions(takes).unwrap() }
 }
 
 fn steel(body: BodyId, position: usize) -> ContactEvent {

@@ -37,6 +37,8 @@ struct File {
     modes: Vec<Mode>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    takes: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -140,9 +142,12 @@ impl ModalModel {
         if file.diffuse.is_some() && file.version < VERSION_WITH_BANDS {
             return Err(malformed(format!("diffuse stands in version {}; need version 3", file.version)));
         }
-        let File { source, impulse_n_s, modes, positions, residual, diffuse, shapes, unit, click, .. } = file;
+        let File {
+            source, impulse_n_s, modes, positions, takes, residual, diffuse, shapes, unit, click, ..
+        } = file;
         let shapes = shapes.map(Arc::new);
-        let model = Self { source, impulse_n_s, modes, positions, residual, diffuse, shapes, unit, click };
+        let model =
+            Self { source, impulse_n_s, modes, positions, takes, residual, diffuse, shapes, unit, click };
         model.check()?;
         Ok(model)
     }
@@ -177,6 +182,7 @@ impl ModalModel {
             unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
+            takes: self.takes,
             residual: self.residual.clone(),
             diffuse: self.diffuse.clone(),
             shapes: self.shapes.as_deref().cloned(),

@@ -40,6 +40,9 @@ pub struct ModalModel {
     /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes`
     /// itself.
     pub positions: Vec<Vec<f64>>,
+    /// True where the positions are takes: the same blow again and again, as
+    /// [`Body::variation`](crate::Body::variation) plays them.
+    pub takes: bool,
     /// Part of the strike besides modes, played at every impact.
     pub residual: Option<Residual>,
     /// Bands of noise between and above the modes, played by impacts and strokes.
@@ -106,6 +109,7 @@ impl ModalModel {
             impulse_n_s: 1.0,
             modes: Vec::new(),
             positions: Vec::new(),
+            takes: false,
             residual: None,
             diffuse: None,
             shapes: None,
@@ -250,6 +254,7 @@ impl ModalModel {
                 .iter()
                 .map(|amplitudes| (0..amplitudes.len()).filter(kept).map(|i| amplitudes[i]).collect())
                 .collect(),
+            takes: self.takes,
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             residual: self.residual.clone(),
@@ -261,7 +266,7 @@ impl ModalModel {
     }
 
     /// The modes as they answer a strike at a position.
-    fn modes_at(&self, position: usize) -> impl Iterator<Item = Mode> + '_ {
+    pub(crate) fn modes_at(&self, position: usize) -> impl Iterator<Item = Mode> + '_ {
         let elsewhere = position.checked_sub(1).and_then(|i| self.positions.get(i));
         self.modes.iter().enumerate().map(move |(i, mode)| {
             let amplitude = elsewhere.and_then(|a| a.get(i)).copied().unwrap_or(mode.amplitude);

@@ -250,6 +250,7 @@ fn write_strikes(
     let merged = merge(&strikes);
     let body = modes_file::Body::plain(&fit.source, &changed(&merged.strikes[0]), options.impulse)
         .with_positions(&merged.positions())
+        .of_takes(options.family)
         .with_burst(burst)
         .with_bands(bands);
     modes_file::write(outputs, &options.output, &body)?;

@@ -20,6 +20,8 @@ pub struct Body<'a> {
     modes: Vec<FileMode>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    takes: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     fit: Option<Details>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -87,7 +89,7 @@ impl<'a> Body<'a> {
         let modes = modes.iter().map(plain).collect();
         let (format, version) = ("asperity.modes", 1);
         let (positions, fit, residual, diffuse) = (Vec::new(), None, None, None);
-        Self { format, version, source, impulse_n_s, modes, positions, fit, residual, diffuse }
+        Self { format, version, source, impulse_n_s, modes, positions, takes: false, fit, residual, diffuse }
     }
 
     /// A fit, with `modes` (rescaled ones, perhaps) in the place of its own.
@@ -100,6 +102,11 @@ impl<'a> Body<'a> {
     pub fn with_positions(mut self, positions: &[Vec<f64>]) -> Self {
         self.positions = positions.to_vec();
         self
+    }
+
+    /// Positions that are takes of one blow, where `takes` says so.
+    pub fn of_takes(self, takes: bool) -> Self {
+        Self { takes, ..self }
     }
 
     /// With bands of noise, if there are any: then of version 3.

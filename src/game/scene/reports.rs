@@ -3,7 +3,7 @@
 
 use super::Scene;
 use crate::game::silence::SilenceReason;
-use crate::game::variation::{Variation, Varied};
+use crate::game::variation::Varied;
 use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
@@ -348,7 +348,7 @@ impl Scene {
     /// Differences of an impact from what was reported, where those on its body vary.
     fn varied(&mut self, impact: &Impact) -> Varied {
         let variation = self.bodies.get_mut(impact.body.0).and_then(|body| body.variation.as_mut());
-        variation.map_or(Varied::NONE, Variation::draw)
+        variation.map_or(Varied::NONE, |variation| variation.draw(impact.position))
     }
 
     /// Place of an impact on its body.
