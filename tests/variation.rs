@@ -115,13 +115,16 @@ fn every_kind_of_body_varies_and_none_by_more_than_a_player_does() {
         ("bands of noise", ModalModel { impulse_n_s: 0.01, diffuse, ..ModalModel::silent() }),
     ];
     for (name, model) in bodies {
-        let sounds = blows(&varied(model, 1.0), 3, &[0; 8], 256);
-        for (n, pair) in sounds.windows(2).enumerate() {
-            let (apart, louder) =
-                (apart_db(&pair[0], &pair[1]), 20.0 * (rms(&pair[0]) / rms(&pair[1])).log10());
-            println!("{name}, blows {n} and {}: {apart:.1} dB apart, {louder:+.1} dB", n + 1);
-            assert!(apart > -35.0 && louder.abs() < 6.0, "{name}: {apart} dB, {louder} dB");
+        let sounds = blows(&varied(model, 1.0), 3, &[0; 10], 256);
+        let mut apart: Vec<f64> = Vec::new();
+        for pair in sounds.windows(2) {
+            let louder = 20.0 * (rms(&pair[0]) / rms(&pair[1])).log10();
+            assert!(louder.abs() < 6.0, "{name}: {louder} dB");
+            apart.push(apart_db(&pair[0], &pair[1]));
         }
+        apart.sort_by(f64::total_cmp);
+        println!("{name}: {:.1} dB apart at least, {:.1} in the median", apart[0], apart[4]);
+        assert!(apart[0] > -60.0 && apart[4] > -25.0, "{name}: {apart:?}");
     }
 }
 
