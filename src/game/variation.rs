@@ -102,7 +102,7 @@ impl Variation {
     }
 
     fn softer(&mut self) -> f64 {
-        (HARDER * self.amount * self.rng.normal()).exp()
+        libm::exp(HARDER * self.amount * self.rng.normal())
     }
 
     /// A take that is not the last one, all others equally likely.
@@ -127,7 +127,7 @@ pub(crate) fn with_takes(model: &ModalModel, amount: f64, seed: u64) -> Cow<'_, 
         let aside = SPREAD * rng.normal();
         let at = |mode: Mode| {
             let waves = PI * (mode.frequency_hz / lowest_hz).sqrt() * aside;
-            mode.amplitude * (waves.cos() + rng.normal() * waves.sin())
+            mode.amplitude * (libm::cos(waves) + rng.normal() * libm::sin(waves))
         };
         model.modes_at(position).map(at).collect()
     };
