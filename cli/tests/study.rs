@@ -99,6 +99,8 @@ fn a_study_that_cannot_be_asked_is_refused_in_one_line() {
         assert_refused(&asperity(scene.folder.path(), &["study", "study.toml", "-o", "page"]), parts);
         assert!(!scene.path("page/index.html").exists());
     }
+    scene.write("none.csv", "participant,trial,protocol,stimulus,shown,answer,correct,response_ms,time\n");
+    assert_refused(&asperity(scene.folder.path(), &["study", "analyse", "none.csv"]), &["hold no answer"]);
     for arguments in [
         &["study"][..],
         &["study", "study.toml"],
