@@ -144,11 +144,8 @@ fn report(answers: &[Answer], options: &Options) -> Result<Report, CliError> {
     let (checks, asked): (Vec<&Answer>, Vec<&Answer>) =
         answers.iter().partition(|answer| answer.protocol == "attention");
     if asked.is_empty() {
-        return Err(CliError::new(
-            "answers",
-            "hold no answer",
-            "must have a row an answer under the heading",
-        ));
+        let right = "must have a row an answer under the heading, all of one protocol";
+        return Err(CliError::new("answers", "hold none", right));
     }
     let mut protocols: Vec<&str> = asked.iter().map(|answer| &*answer.protocol).collect();
     protocols.sort_unstable();
