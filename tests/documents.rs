@@ -58,7 +58,7 @@ fn every_link_between_the_documents_leads_to_a_file() {
     }
 }
 
-/// First fenced block of a language, with or without an indentation; its fence stands at the margin.
+/// First fenced block of a language, indented or not; its fence has to stand at the margin.
 fn first_block(text: &str, language: &str) -> String {
     let fence = format!("```{language}");
     let mut lines = text.lines().skip_while(|line| line.trim() != fence);
