@@ -58,6 +58,31 @@ fn every_link_between_the_documents_leads_to_a_file() {
     }
 }
 
+/// First fenced block of a language, indented or not; its fence has to stand at the margin.
+fn first_block(text: &str, language: &str) -> String {
+    let fence = format!("```{language}");
+    let mut lines = text.lines().skip_while(|line| line.trim() != fence);
+    assert_eq!(lines.next(), Some(&*fence), "the first block of {language} is indented, or there is none");
+    lines.take_while(|line| *line != "```").map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn the_first_blocks_of_a_bindings_readme_run_as_they_stand() {
+    for (binding, language, part) in [
+        ("c", "c", "int main("),
+        ("python", "python", "import asperity"),
+        ("web", "js", "from 'asperity/"),
+        ("godot", "gdscript", "extends SceneTree"),
+        ("bevy", "rust", "fn main()"),
+    ] {
+        let path = root().join("bindings").join(binding).join("README.md");
+        let text = fs::read_to_string(path).unwrap();
+        assert!(!first_block(&text, "sh").is_empty(), "{binding}");
+        let program = first_block(&text, language);
+        assert!(program.contains(part), "{binding}: {program}");
+    }
+}
+
 #[test]
 fn every_test_bench_and_example_that_the_figures_name_exists() {
     let text = fs::read_to_string(root().join("docs/lab/figures.md")).unwrap();

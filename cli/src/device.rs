@@ -81,6 +81,9 @@ fn of_table(path: &Path) -> Result<Sweep, CliError> {
 fn of_sound(path: &Path) -> Result<Sweep, CliError> {
     let channel = |index| Sound::load(path, index, LONGEST_S).map_err(CliError::from_error);
     let drive = channel(0)?;
+    if Sound::load(path, 1, LONGEST_S).is_err() {
+        return Err(CliError::file(path, "has one channel", "must hold two: drive and acceleration"));
+    }
     if Sound::load(path, 2, LONGEST_S).is_ok() {
         return Err(CliError::file(path, "has more than two channels", "must hold drive and acceleration"));
     }

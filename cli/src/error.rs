@@ -72,6 +72,15 @@ impl fmt::Display for CliError {
 
 impl std::error::Error for CliError {}
 
+/// Refusals of the number parsers of the standard library, and what would be right.
+const NUMBERS: [(&str, &str); 5] = [
+    ("invalid digit found in string", "must be a whole number from 0 on"),
+    ("cannot parse integer from empty string", "must be a whole number from 0 on"),
+    ("number too large to fit in target type", "must be a smaller number"),
+    ("invalid float literal", "must be a number"),
+    ("cannot parse float from empty string", "must be a number"),
+];
+
 /// One line for a refusal of the command line, where clap writes a paragraph.
 pub fn usage_line(refusal: &clap::Error) -> String {
     let text = refusal.to_string();
@@ -87,5 +96,6 @@ pub fn usage_line(refusal: &clap::Error) -> String {
         _ => lines.join(" ").trim_start_matches("error: ").to_owned(),
     };
     let what: String = what.split(char::is_control).collect::<Vec<_>>().join(" ");
+    let what = NUMBERS.iter().fold(what, |what, (refused, right)| what.replace(refused, right));
     format!("error: {what}; `asperity --help` and `asperity VERB --help` say what is accepted")
 }

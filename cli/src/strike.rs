@@ -3,7 +3,7 @@
 
 use crate::error::CliError;
 use crate::fit;
-use crate::sounds::{self, Folder, MOST_TAIL_S, Sound, short, stem, take_suffix};
+use crate::sounds::{self, Folder, MOST_TAIL_S, Sound, Told, short, stem, take_suffix};
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
 use asperity::{Material, ModalModel, Stock};
 use asperity_dsp::rng::Rng;
@@ -95,14 +95,14 @@ fn place(text: &str) -> Result<[f64; 3], String> {
 pub fn run(options: &Options) -> Result<(), CliError> {
     let kind = Kind::of(options)?;
     let folder = Folder::open(&options.sounds.output)?;
-    let (body, mut assumed) = Body::of(options, &kind, &folder)?;
+    let (body, mut told) = Body::of(options, &kind, &folder)?;
     body.check(options)?;
     if options.at.is_none() && body.model.shapes.is_some() {
-        assumed.push("hit where its modes file says (--at X,Y,Z hits another place)".to_owned());
+        told.assumed.push("hit where its modes file says (--at X,Y,Z hits another place)".to_owned());
     }
     let sounds = body.sounds(options);
     let inputs = [options.what.clone()];
-    sounds::make(&sounds, &options.sounds, &folder, &inputs, assumed)
+    sounds::make(&sounds, &options.sounds, &folder, &inputs, told)
 }
 
 /// Meaning of the first argument.
@@ -154,12 +154,12 @@ struct Body {
 }
 
 impl Body {
-    fn of(options: &Options, kind: &Kind, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
+    fn of(options: &Options, kind: &Kind, folder: &Folder) -> Result<(Self, Told), CliError> {
         let mut table = Table::new();
         table.insert("name".into(), Value::String("body".into()));
         // Loudness is the set's; beside strokes there is nothing to be turned down for.
         table.insert("strike_gain".into(), Value::Float(1.0));
-        let mut assumed = Vec::new();
+        let mut told = Told::default();
         let modes = match kind {
             Kind::Stock(stock) => {
                 let (material, size_m) = stock.usual();
@@ -168,13 +168,13 @@ impl Body {
                 let name = options.what.to_string_lossy().into_owned();
                 let of = material.name().unwrap_or_default();
                 if options.size.is_none() || options.material.is_none() {
-                    assumed.push(format!("a {name} of {of}, {size_m} m (--material, --size)"));
+                    told.assumed.push(format!("a {name} of {of}, {size_m} m (--material, --size)"));
                 }
                 let model = stock.modes(&material, size_m).map_err(CliError::from_error)?;
                 table.insert("stock".into(), Value::String(name.clone()));
                 table.insert("size_m".into(), Value::Float(size_m));
                 table.insert("material".into(), Value::String(of.to_owned()));
-                return Ok((Self { name: format!("{of}-{name}"), table, model }, assumed));
+                return Ok((Self { name: format!("{of}-{name}"), table, model }, told));
             }
             Kind::Modes => options.what.clone(),
             Kind::Recording => {
@@ -183,13 +183,14 @@ impl Body {
                     burst_ms: Some(BURST_MS),
                     ..fit::Options::plain(options.what.clone(), modes.clone())
                 })?;
-                assumed.push(format!(
+                told.assumed.push(format!(
                     "fitted {}: {} modes, {:.0} dB above what they leave, in {}",
                     options.what.display(),
                     fitted.modes,
                     fitted.resynthesis_snr_db,
                     modes.display()
                 ));
+                told.warnings = fitted.warnings;
                 modes
             }
         };
@@ -200,7 +201,7 @@ impl Body {
         }
         let home = std::env::current_dir().unwrap_or_default();
         let table = sounds::with_absolute_paths(&table, &home);
-        Ok((Self { name: stem(&options.what), table, model }, assumed))
+        Ok((Self { name: stem(&options.what), table, model }, told))
     }
 
     /// Refuses a place that the body does not have.

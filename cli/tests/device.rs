@@ -93,6 +93,17 @@ fn a_recording_that_is_no_sweep_leaves_no_profile() {
         assert_refused(&asperity(folder, &["device", name, "-o", "my.toml"]), &[name, part]);
         assert!(!folder.join("my.toml").exists());
     }
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ as u32,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut writer = hound::WavWriter::create(folder.join("mono.wav"), spec).unwrap();
+    rows.iter().for_each(|[_, felt]| writer.write_sample(*felt as f32).unwrap());
+    writer.finalize().unwrap();
+    let output = asperity(folder, &["device", "mono.wav", "-o", "my.toml"]);
+    assert_refused(&output, &["mono.wav", "has one channel", "drive and acceleration"]);
     let (status, _, err) = told(&asperity(folder, &["device", "short.csv", "-o", "short.csv"]));
     assert!(status == 1 && err.starts_with("error: "), "{err}");
 }

@@ -225,6 +225,20 @@ fn several_strikes_become_strike_positions_of_one_body() {
     assert_eq!(asperity_model(folder, "family.modes.json"), family);
 }
 
+#[test]
+fn a_family_counts_the_modes_of_its_file_and_warns_of_every_take() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(&folder.join("a.wav"), &noisy(ringing(1.0, [1.0, 1.0, 1.0, 0.0, 1.0]), 1e-4));
+    let loud: Vec<f64> = ringing(1.0, [1.0; 5]).iter().map(|x| 2.5 * x).collect();
+    write(&folder.join("too loud.wav"), &noisy(loud, 1e-4));
+    let report = fit(folder, &["a.wav", "too loud.wav", "--family", "-o", "family.modes.json"]);
+    let body = asperity_model(folder, "family.modes.json");
+    assert!(body.modes.len() > 4, "{report}");
+    assert_eq!(report["modes"], body.modes.len());
+    assert!(report["warnings"].to_string().contains("too loud.wav: clipping"), "{report}");
+}
+
 /// Sides of a plate held at its edges, m, and the places where it is struck.
 const PLATE_M: [f64; 2] = [0.4, 0.3];
 const STRUCK_M: [[f64; 2]; 4] = [[0.07, 0.05], [0.16, 0.06], [0.06, 0.13], [0.18, 0.12]];

@@ -186,6 +186,7 @@ fn what_is_no_body_is_one_line_and_no_file() {
         (vec!["bar.obj", "--material", "steel", "--poisson", "0.5"], "poisson"),
         (vec!["bar.obj", "--material", "steel", "--up-to", "1e6"], "--up-to"),
         (vec!["bar.obj", "--material", "steel", "--size", "0"], "--size"),
+        (vec!["bar.obj", "--material", "steel", "--unit", "mm", "--max-modes", "6"], "bar.obj: modes[0]"),
         (vec!["bar.step", "--material", "steel"], "bar.step"),
     ] {
         let all: Vec<&str> = ["modes"].into_iter().chain(arguments).chain(["-o", "x.modes.json"]).collect();

@@ -152,8 +152,33 @@ fn a_photograph_is_stroked_in_one_command_that_says_how_wide_it_took_it() {
     let report = json_of(folder, &["stroke", "wall.ppm", "-o", "set", "--seconds", "0.4", "--json"]);
     let assumed = report["assumed"].to_string();
     assert!(assumed.contains("taken to be 15 mm wide (--width-m says another width)"), "{assumed}");
+    assert!(!assumed.contains("warning"), "{assumed}");
+    let doubts = report["warnings"].to_string();
+    assert!(doubts.contains("which way up the heights are is a guess"), "{doubts}");
     let report = json_of(folder, &["stroke", "set/wall-surface", "-o", "more", "--seconds", "0.4", "--json"]);
     assert_eq!(names(&report), ["wall-surface-fingertip-0.1m_s-0.6N-line"]);
+}
+
+#[test]
+fn a_clipped_recording_that_is_struck_is_said_to_be_clipped() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: 22_050,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut writer = hound::WavWriter::create(folder.join("too loud.wav"), spec).unwrap();
+    for n in -1000..12_000 {
+        let t = f64::from(n.max(0)) / 22_050.0;
+        let ringing = 3.0 * (-12.0 * t).exp() * (std::f64::consts::TAU * 640.0 * t).sin();
+        writer.write_sample((32_767.0 * ringing.clamp(-1.0, 1.0)) as i16).unwrap();
+    }
+    writer.finalize().unwrap();
+    let report = json_of(folder, &["strike", "too loud.wav", "-o", "hits", "--json"]);
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains("clipping"), "{report}");
 }
 
 #[test]

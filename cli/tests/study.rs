@@ -196,7 +196,7 @@ fn thresholds_ratings_and_abx_are_reported_with_intervals() {
         ("short.csv", format!("{HEADER}\np,1,abx\n"), &["short.csv: line 2", "3 fields"]),
         ("right.csv", format!("{HEADER}\np,1,abx,s,s,a,maybe,1,t\n"), &["right.csv: line 2", "maybe"]),
         ("level.csv", format!("{HEADER}\np,1,staircase,s,loud,a,1,1,t\n"), &["shown", "loud"]),
-        ("empty.csv", format!("{HEADER}\n"), &["answers", "one protocol"]),
+        ("empty.csv", format!("{HEADER}\n"), &["answers: hold none", "one protocol"]),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
         assert_refused(&asperity(folder.path(), &["study", "analyse", name]), parts);

@@ -35,6 +35,21 @@ fn wrong_usage_is_one_line_and_status_2() {
 }
 
 #[test]
+fn what_is_no_number_is_answered_with_what_would_be_one() {
+    let scene = Scene::new();
+    for (arguments, right) in [
+        (&["--seed", "-3"][..], "must be a whole number from 0 on"),
+        (&["--block", "many"], "must be a whole number from 0 on"),
+        (&["--seed", "99999999999999999999"], "must be a smaller number"),
+    ] {
+        let (status, _, err) = told(&scene.render(arguments));
+        assert!(status == 2 && err.contains(right), "{arguments:?}: {err}");
+    }
+    let (status, _, err) = told(&asperity(Path::new("."), &["fit", "a.wav", "-o", "b", "--impulse", "hard"]));
+    assert!(status == 2 && err.contains("must be a number"), "{err}");
+}
+
+#[test]
 fn a_misspelt_choice_is_answered_with_the_choices() {
     let scene = Scene::new();
     let (_, _, err) = told(&scene.render(&["--integrator", "euler"]));

@@ -69,18 +69,19 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
     let mut bands = if options.bands { fit.diffuse() } else { Vec::new() };
     rescale_bands(&mut bands, &plain, options.scale_size.unwrap_or(1.0), law.as_ref());
-    let mut places = None;
+    let (mut places, mut several) = (None, None);
     if options.others().next().is_none() {
         let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse);
         let body = body.with_burst(burst).with_bands(&bands);
         modes_file::write(&mut outputs, &options.output, &body)?;
     } else {
         let first = First { recording: &recording, fit: &fit, burst, bands: &bands };
-        let merged = write_strikes(&mut outputs, options, channel, first, &changed)?;
+        let (merged, others) = write_strikes(&mut outputs, options, channel, first, &changed)?;
         let recordings: Vec<&Path> =
             std::iter::once(&options.recording).chain(options.others()).map(PathBuf::as_path).collect();
         let mesh = options.mesh.as_deref();
         places = mesh.map(|mesh| PlacesReport::new(mesh, &merged, &recordings)).transpose()?;
+        several = Some((merged.strikes[0].len(), others));
     }
     if let Some(path) = &options.csv {
         outputs.write(path, table::to_csv(&fit.modes).as_bytes())?;
@@ -95,7 +96,13 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
         outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
     }
     outputs.commit()?;
-    Ok(Report { places, ..Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()) })
+    let mut report = Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64());
+    report.places = places;
+    if let Some((modes, others)) = several {
+        report.modes = modes;
+        options.others().zip(&others).for_each(|(path, fit)| report.warn_of(path, fit));
+    }
+    Ok(report)
 }
 
 /// Modes of another size or material, as the options say.
@@ -234,14 +241,15 @@ struct First<'a> {
     bands: &'a [DiffuseBand],
 }
 
-/// Several strikes: one body with a strike position each, and `OUT.strike0.modes.json` and so on.
+/// Several strikes: one body with a strike position each, and `OUT.strike0.modes.json` and so on;
+/// returns the fits of all but the first as well.
 fn write_strikes(
     outputs: &mut Outputs,
     options: &Options,
     channel: ChannelChoice,
     first: First<'_>,
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
-) -> Result<Merged, CliError> {
+) -> Result<(Merged, Vec<Fit>), CliError> {
     let First { recording, fit, burst, bands } = first;
     let others =
         options.others().map(|path| fitted(path, channel, options)).collect::<Result<Vec<_>, CliError>>()?;
@@ -261,7 +269,7 @@ fn write_strikes(
         let body = modes_file::Body::plain(&strikes[s].1.source, &changed(modes), options.impulse);
         modes_file::write(outputs, &path, &body)?;
     }
-    Ok(merged)
+    Ok((merged, others.into_iter().map(|(_, fit)| fit).collect()))
 }
 
 fn write_samples(outputs: &mut Outputs, path: &Path, samples: &[f64], rate_hz: f64) -> Result<(), CliError> {

@@ -9,6 +9,7 @@ use asperity_fit::Fit;
 use asperity_fit::after::scaling::DampingLaw;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A table's modes with a longer T60 are probably mistakes.
 const LONGEST_T60_S: f64 = 60.0;
@@ -52,6 +53,14 @@ pub struct Report {
 }
 
 impl Report {
+    /// Adds the warnings of a further recording of the same object.
+    pub fn warn_of(&mut self, recording: &Path, fit: &Fit) {
+        for warning in &fit.warnings {
+            *self.warning_counts.entry(warning.kind()).or_default() += warning.count();
+            self.warnings.push(format!("{}: {warning}", recording.display()));
+        }
+    }
+
     /// Sums a fit up.
     pub fn new(fit: &Fit, law: Option<DampingLaw>, seconds: f64) -> Self {
         Self {

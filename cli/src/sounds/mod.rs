@@ -78,6 +78,15 @@ pub struct Sound {
     pub cut: Option<Loop>,
 }
 
+/// Remarks on how the body or the surface of a set was made.
+#[derive(Debug, Default)]
+pub struct Told {
+    /// Assumptions, where no option was given.
+    pub assumed: Vec<String>,
+    /// Warnings of the fit, or of the photograph.
+    pub warnings: Vec<String>,
+}
+
 /// Output of `--json`.
 #[derive(Debug, Serialize)]
 struct Report {
@@ -140,10 +149,11 @@ pub fn make(
     options: &Options,
     folder: &Folder,
     inputs: &[PathBuf],
-    assumed: Vec<String>,
+    told: Told,
 ) -> Result<(), CliError> {
     check_outputs(sounds, folder, inputs)?;
-    let mut report = Report { files: Vec::new(), gain: None, assumed, warnings: Vec::new() };
+    let Told { assumed, warnings } = told;
+    let mut report = Report { files: Vec::new(), gain: None, assumed, warnings };
     let mut progress = Progress::new("rendering", 2 * sounds.len() as u64);
     let mut trials = Vec::new();
     for sound in sounds {

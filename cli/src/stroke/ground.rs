@@ -2,7 +2,7 @@
 
 use super::Options;
 use crate::error::CliError;
-use crate::sounds::{Folder, stem, with_absolute_paths};
+use crate::sounds::{Folder, Told, stem, with_absolute_paths};
 use crate::strike::{has_end, slowest_per_s};
 use crate::texture::from_photo;
 use asperity::files::scene_file::{SceneFile, Source};
@@ -47,12 +47,12 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Meaning of the first argument, and what was assumed; a photograph's maps are made below the
+    /// Meaning of the first argument, and remarks on it; a photograph's maps are made below the
     /// folder first.
     ///
     /// # Errors
     /// When it is nothing to stroke.
-    pub fn of(options: &Options, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
+    pub fn of(options: &Options, folder: &Folder) -> Result<(Self, Told), CliError> {
         let what = &options.what;
         if what.is_dir() {
             let scene = what.join("scene.toml");
@@ -61,14 +61,14 @@ impl Ground {
                 return Err(CliError::file(what, "is a folder without a scene.toml", right));
             }
             let name = what.canonicalize().map_or_else(|_| "surface".to_owned(), |path| stem(&path));
-            return Ok((Self::of_scene(options, &scene, name)?, Vec::new()));
+            return Ok((Self::of_scene(options, &scene, name)?, Told::default()));
         }
         if !what.is_file() {
             let right = "name a map, a photograph, a folder of from-photo or a scene";
             return Err(CliError::file(what, "no such file", right));
         }
         if has_end(what, &["toml"]) {
-            return Ok((Self::of_scene(options, what, stem(what))?, Vec::new()));
+            return Ok((Self::of_scene(options, what, stem(what))?, Told::default()));
         }
         if has_end(what, &["wav", "flac", "ogg", "mp3", "aiff", "m4a", "json"]) {
             let right = "`asperity strike` takes recordings and modes files";
@@ -77,7 +77,7 @@ impl Ground {
         if is_photograph(what)? { Self::of_photo(options, folder) } else { Self::of_map(options) }
     }
 
-    fn of_photo(options: &Options, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
+    fn of_photo(options: &Options, folder: &Folder) -> Result<(Self, Told), CliError> {
         let material = options.material.as_deref();
         let body = material.map(|material| body_of(material, "plate")).transpose()?;
         let name = stem(&options.what);
@@ -87,9 +87,9 @@ impl Ground {
             relief_m: options.relief_m,
             ..from_photo::Options::plain(options.what.clone(), maps.clone())
         })?;
-        let mut assumed =
+        let assumed =
             vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];
-        assumed.extend(report.warnings().iter().map(|warning| format!("warning: {warning}")));
+        let told = Told { assumed, warnings: report.warnings().to_vec() };
         let plain = Options { width_m: None, relief_m: None, material: None, ..options.clone() };
         let mut ground = Self::of_scene(&plain, &maps.join("scene.toml"), name)?;
         if let Some(body) = body {
@@ -98,10 +98,10 @@ impl Ground {
             ground = Self { inputs: ground.inputs, ..Self::of_table(&plain, scene, &maps, ground.name)? };
         }
         ground.inputs.push(options.what.clone());
-        Ok((ground, assumed))
+        Ok((ground, told))
     }
 
-    fn of_map(options: &Options) -> Result<(Self, Vec<String>), CliError> {
+    fn of_map(options: &Options) -> Result<(Self, Told), CliError> {
         let what = &options.what;
         let map = load_channel(what, Channel::Luma).map_err(CliError::from_error)?.raster;
         let mut assumed = Vec::new();
@@ -133,7 +133,7 @@ impl Ground {
         scene.insert("body".into(), Value::Array(vec![Value::Table(body)]));
         scene.insert("surface".into(), Value::Array(vec![Value::Table(surface)]));
         let home = path.parent().unwrap_or(Path::new(""));
-        Ok((Self::of_table(options, scene, home, stem(what))?, assumed))
+        Ok((Self::of_table(options, scene, home, stem(what))?, Told { assumed, ..Told::default() }))
     }
 
     fn of_scene(options: &Options, path: &Path, name: String) -> Result<Self, CliError> {

@@ -143,6 +143,10 @@ fn fields(line: &str) -> Vec<String> {
 fn report(answers: &[Answer], options: &Options) -> Result<Report, CliError> {
     let (checks, asked): (Vec<&Answer>, Vec<&Answer>) =
         answers.iter().partition(|answer| answer.protocol == "attention");
+    if asked.is_empty() {
+        let right = "must have a row an answer under the heading, all of one protocol";
+        return Err(CliError::new("answers", "hold none", right));
+    }
     let mut protocols: Vec<&str> = asked.iter().map(|answer| &*answer.protocol).collect();
     protocols.sort_unstable();
     protocols.dedup();

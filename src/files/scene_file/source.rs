@@ -192,7 +192,8 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
             Ok(Source::Grating(GratingParameters::default()))
         }
         Some(Value::String(preset)) if !preset.is_empty() => {
-            let parameters = Box::new(solid_preset(fields, "solid", &preset)?);
+            let mut parameters = Box::new(solid_preset(fields, "solid", &preset)?);
+            parameters.flow_m_s = fields.number_or_vector(&solid::FLOW_M_S)?.unwrap_or(parameters.flow_m_s);
             Ok(Source::Solid { parameters, seed: None })
         }
         Some(value) => Err(fields.refuse("solid", format!("{} is no material", shown(&value)), right)),

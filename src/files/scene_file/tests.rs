@@ -82,6 +82,8 @@ fn every_source_of_the_interface_is_read() {
     assert_eq!(source(""), Source::Flat);
     let gravel = Box::new(SolidMaterial::Gravel.parameters());
     assert_eq!(source("solid = \"gravel\""), Source::Solid { parameters: gravel, seed: None });
+    let flowing = source("solid = { preset = \"gravel\", flow_m_s = 0.1 }");
+    assert_eq!(source("solid = \"gravel\"\nflow_m_s = 0.1"), flowing);
     assert!(matches!(
         source("brownian = { hurst = 0.5, rms_m = 1e-4 }"),
         Source::Brownian(Brownian { hurst: 0.5, graph: false, force: None, .. })
