@@ -43,6 +43,7 @@ mod render;
 mod report;
 mod scene_log;
 mod scorecard;
+mod shapes;
 mod sounds;
 mod strike;
 mod stroke;

@@ -29,11 +29,19 @@ impl<'a> Loader<'a> {
         strike_gain: f64,
     ) -> Result<Body, FileError> {
         let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
-        let mut model = match (&entry.modes, entry.stock) {
-            (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::from_error)?,
-            (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::from_error)?,
-            (None, None) => ModalModel::silent(),
+        let mut model = match (&entry.modes, &entry.solved, entry.stock) {
+            (Some(path), _, _) => ModalModel::load_from(self.files, path).map_err(FileError::from_error)?,
+            (None, Some(solved), _) => solved.as_ref().clone(),
+            (None, None, Some((shape, size_m))) => {
+                shape.modes(&material, size_m).map_err(FileError::from_error)?
+            }
+            (None, None, None) => ModalModel::silent(),
         };
+        if let (Some((mesh, _)), None) = (&entry.shape, &entry.solved) {
+            let what = format!("{} is a mesh, which the engine does not solve", mesh.display());
+            let right = "run `asperity modes` on it, and write modes = \"NAME.modes.json\"";
+            return Err(FileError::new(format!("body \"{}\": shape", entry.name), what, right));
+        }
         if entry.radiation {
             let told = |error| FileError::from_error(error).within(format!("body \"{}\"", entry.name));
             model = model.radiating(&material).map_err(told)?;

@@ -3,6 +3,7 @@
 use super::{name_of, port::transients_of};
 use crate::error::CliError;
 use crate::scene_log::{load_log, read_past};
+use crate::shapes;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::SceneFile;
 use asperity::load::Overrides;
@@ -110,7 +111,7 @@ fn sound(path: &Path, channel: usize) -> Result<Input, CliError> {
 
 /// Quantity that drives an actuator of a scene.
 fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
-    let file = SceneFile::load(path)?;
+    let mut file = SceneFile::load(path)?;
     let Some(actuator) = file.actuators.get(channel) else {
         let right = format!("must be below {}, the number of [[actuator]] tables", file.actuators.len());
         return Err(CliError::new("--channel", format!("{channel} is not in {}", path.display()), right));
@@ -125,6 +126,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
         return Err(CliError::file(path, what, "write output = \"displacement\" to make a clip of it"));
     }
     let (log, unread) = load_log(&file)?;
+    shapes::solve(&mut file)?;
     let built = Engine::from_scene(&file, &Overrides::default())?;
     let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
     let Engine { scene, renderer, names, .. } = built;

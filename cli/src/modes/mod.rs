@@ -6,13 +6,15 @@ mod picture;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
+use asperity::{Material, ModalModel};
 use asperity_shape::modes_file::ModesFile;
 use asperity_shape::surface_mesh::SurfaceMesh;
 use asperity_shape::unwrap::Unwrapped;
-use asperity_shape::{Making, Mesh};
+use asperity_shape::{Elastic, Making, Mesh};
 use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Steps of the progress bar.
@@ -56,6 +58,30 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     drop(progress);
     let report = report?;
     if options.json { output::say_json(&report) } else { say(&report, options) }
+}
+
+/// Modes of a mesh of a material, `size_m` long or as long as it is, as `asperity modes` writes them.
+///
+/// # Errors
+/// When the mesh is no body, or the modes cannot be solved for.
+pub fn model(
+    mesh: &Path,
+    material: &Material,
+    size_m: Option<f64>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<ModalModel, CliError> {
+    let Material { young_pa, poisson, density_kg_m3, .. } = *material;
+    let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::from_error)?;
+    let wanted = Options::plain(mesh.into(), PathBuf::new()).wanted()?;
+    let making = Making { material: elastic, size_m, unit_m: None, thickness_m: None, wanted };
+    let told =
+        |error: asperity_shape::ShapeError| CliError::from_error(error.within(&mesh.display().to_string()));
+    let shape = asperity_shape::load_part(mesh, None).map_err(CliError::from_error)?;
+    let mut body = asperity_shape::make(shape, &making, progress).map_err(told)?;
+    let file = ModesFile::new(&mut body, &material.damping(), false, mesh).map_err(CliError::from_error)?;
+    let text =
+        serde_json::to_string(&file).map_err(|error| CliError::from_error(error).within(mesh.display()))?;
+    ModalModel::parse(&text).map_err(|error| CliError::from_error(error).within(mesh.display()))
 }
 
 /// Writes the files and says nothing; `progress` hears the part done, 0 to 1.

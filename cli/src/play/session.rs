@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
 use crate::scene_log::{load_log, read_past};
+use crate::shapes;
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogError, Names};
 use asperity::files::scene_file::SceneFile;
@@ -83,8 +84,9 @@ pub fn list(options: &Options) -> Result<(), CliError> {
 /// When an input is bad, a named device is not there, or it is lost and does not come back.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let (scene_path, channels) = scene_and_channels(options)?;
-    let file = SceneFile::load(Path::new(&scene_path))?;
+    let mut file = SceneFile::load(Path::new(&scene_path))?;
     let (log, unread) = load_log(&file)?;
+    shapes::solve(&mut file)?;
     for place in &unread {
         eprintln!("warning: {}", read_past(place));
     }

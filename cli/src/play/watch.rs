@@ -2,6 +2,7 @@
 //! while it plays, and what has changed is applied to what sounds.
 
 use crate::error::CliError;
+use crate::shapes;
 use asperity::Scene;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
@@ -77,7 +78,8 @@ impl<'a> Watch<'a> {
         names: &mut Names,
         touched: &[PathBuf],
     ) -> Result<Vec<String>, CliError> {
-        let after = SceneFile::load(&self.file.path)?;
+        let mut after = SceneFile::load(&self.file.path)?;
+        shapes::solve(&mut after)?;
         let overrides = Overrides { touched, ..self.overrides };
         let changes = scene.apply(names, &self.file, &after, &overrides)?;
         self.sand.extend(changes.workers.into_iter().map(SandWorker::spawn));

@@ -9,7 +9,7 @@ mod view;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
 use crate::scene_log::{load_log, read_past};
-use crate::{haptic, wav};
+use crate::{haptic, shapes, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::{SceneFile, Source, SurfaceEntry};
@@ -174,6 +174,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     file.seed = options.seed.or(file.seed);
     let (log, unread) = load_log(&file)?;
     check_outputs(options, &file)?;
+    shapes::solve(&mut file)?;
     let overrides = Overrides {
         sample_rate_hz: options.rate,
         seed: options.seed,
@@ -275,6 +276,7 @@ fn sand_suffix(surface: &str) -> String {
 /// # Errors
 /// When the scene or the log is refused.
 pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<String>), CliError> {
+    shapes::solve(&mut file)?;
     let built = Engine::from_scene(&file, &Overrides { threads: Some(1), ..Overrides::default() })?;
     let levels = built.levels.clone();
     for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {

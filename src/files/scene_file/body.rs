@@ -4,11 +4,13 @@ use super::fields::{self, Fields};
 use crate::files::FileError;
 use crate::model::body::MAX_SENDS;
 use crate::model::material::Material;
+use crate::model::modal_model::ModalModel;
 use crate::model::pickup::Pickup;
 use crate::model::stock::Stock;
 use crate::parameters;
 use asperity_dsp::limits;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::Value;
 
 /// A body: what an impact on it sounds like.
@@ -20,6 +22,11 @@ pub struct BodyEntry {
     pub modes: Option<PathBuf>,
     /// A stock shape and its size, m.
     pub stock: Option<(Stock, f64)>,
+    /// A mesh, and its longest side, m; none = as long as it is. Whoever opens the scene solves it.
+    pub shape: Option<(PathBuf, Option<f64>)>,
+    /// Modes of that mesh, of this material and size: `asperity render` sets them, and a program
+    /// with a solver of its own can.
+    pub solved: Option<Arc<ModalModel>>,
     /// Material; none = the engine's default.
     pub material: Option<Material>,
     /// True where its modes are as loud as their shapes radiate, in pascals at 1 m.
@@ -49,10 +56,14 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
+    let modes = fields.file("modes", folder)?;
+    let (shape, stock) = read_shape(&mut fields, folder)?;
     let body = BodyEntry {
         name,
-        modes: fields.file("modes", folder)?,
-        stock: read_stock(&mut fields)?,
+        modes,
+        stock,
+        shape,
+        solved: None,
         material: read_material(&mut fields, "material")?,
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
@@ -65,10 +76,12 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         bus: fields.text("bus")?,
         pickups: Vec::new(),
     };
-    if body.modes.is_some() && body.stock.is_some() {
-        return Err(fields.refuse("stock", "stands beside modes", "write one of them"));
+    for (key, is_there) in [("stock", body.stock.is_some()), ("shape", body.shape.is_some())] {
+        if body.modes.is_some() && is_there {
+            return Err(fields.refuse(key, "stands beside modes", "write one of them"));
+        }
     }
-    if body.radiation && body.modes.is_none() {
+    if body.radiation && body.modes.is_none() && body.shape.is_none() {
         let right = "give modes with shapes, or leave it out; a stock body radiates already";
         return Err(fields.refuse("radiation", "stands without modes", right));
     }
@@ -93,19 +106,28 @@ fn read_sends(fields: &mut Fields) -> Result<Vec<(String, f64)>, FileError> {
     Ok(gains)
 }
 
-/// `stock` and the `size_m` that it needs.
-fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
-    let shape = fields.word("stock", &Stock::ALL)?;
+type Shape = (PathBuf, Option<f64>);
+
+/// `shape`, which may have a `size_m`, or `stock`, which needs one.
+fn read_shape(
+    fields: &mut Fields,
+    folder: &Path,
+) -> Result<(Option<Shape>, Option<(Stock, f64)>), FileError> {
+    let mesh = fields.file("shape", folder)?;
+    let stock = fields.word("stock", &Stock::ALL)?;
     let size_m = fields.number(&parameters::body::SIZE_M)?;
-    match (shape, size_m) {
-        (Some(shape), Some(size_m)) => Ok(Some((shape, size_m))),
-        (Some(_), None) => {
+    match (mesh, stock, size_m) {
+        (Some(_), Some(_), _) => Err(fields.refuse("shape", "stands beside stock", "write one of them")),
+        (Some(mesh), None, size_m) => Ok((Some((mesh, size_m)), None)),
+        (None, Some(stock), Some(size_m)) => Ok((None, Some((stock, size_m)))),
+        (None, Some(_), None) => {
             Err(fields.missing("size_m", "its longest side or its diameter, for instance 0.3"))
         }
-        (None, Some(_)) => {
-            Err(fields.refuse("size_m", "stands without stock", "write stock = \"bar\", or leave it out"))
+        (None, None, Some(_)) => {
+            let right = "write stock = \"bar\" or shape = \"body.obj\", or leave it out";
+            Err(fields.refuse("size_m", "stands without stock or shape", right))
         }
-        (None, None) => Ok(None),
+        (None, None, None) => Ok((None, None)),
     }
 }
 

@@ -13,10 +13,10 @@ impl SceneFile {
 }
 
 impl BodyEntry {
-    /// Its modes file, where it has one.
+    /// Its modes file or its mesh, where it has one.
     #[must_use]
     pub fn named_files(&self) -> Vec<&Path> {
-        self.modes.as_deref().into_iter().collect()
+        self.modes.as_deref().into_iter().chain(self.shape.as_ref().map(|(mesh, _)| &**mesh)).collect()
     }
 }
 

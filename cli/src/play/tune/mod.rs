@@ -12,6 +12,7 @@ use super::Options;
 use crate::error::CliError;
 use crate::output;
 use crate::scene_log::load_log;
+use crate::shapes;
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::files::scene_file::SceneFile;
 #[cfg(not(feature = "device"))]
@@ -79,7 +80,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         .ok_or_else(|| CliError::new("SCENE.toml", "is missing", "name a scene file"))?;
     let kept = std::fs::read_to_string(&path).map_err(|error| CliError::read(&path, &error))?;
     let document = Document::parse(&kept, &path)?;
-    let file = SceneFile::parse(&kept, &path)?;
+    let mut file = SceneFile::parse(&kept, &path)?;
+    shapes::solve(&mut file)?;
     let log = if file.contacts.is_some() { load_log(&file)?.0 } else { ContactLog::default() };
     let overrides = Overrides { live: true, sample_rate_hz: rate(), ..Overrides::default() };
     let Engine { scene, renderer, names, workers, .. } = Engine::from_scene(&file, &overrides)?;
@@ -172,7 +174,8 @@ impl Tuned<'_> {
 
     /// Makes what sounds what `document` says; where that cannot be, all stays as it was.
     fn apply(&mut self, document: Document) -> Result<(), CliError> {
-        let after = SceneFile::parse(&document.text(), &self.path)?;
+        let mut after = SceneFile::parse(&document.text(), &self.path)?;
+        shapes::solve(&mut after)?;
         let changes = self.scene.apply(&mut self.names, &self.file, &after, &self.overrides)?;
         self.sand.extend(changes.workers.into_iter().map(SandWorker::spawn));
         self.log.ends_s = self.log.lines.end_s() + after.tail_s;
