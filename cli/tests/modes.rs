@@ -197,3 +197,42 @@ fn what_is_no_body_is_one_line_and_no_file() {
         assert!(!at.join("x.modes.json").exists());
     }
 }
+
+/// Was an unknown key, though a scene may name a mesh.
+#[test]
+fn a_scene_whose_body_is_a_mesh_sounds_as_with_its_modes_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    let blow = r#"{"t":0.0,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.01,"radius_m":0.005,"at_m":[0.1,0.01,0.01]}"#;
+    std::fs::write(at.join("blow.jsonl"), format!("{blow}\n")).unwrap();
+    let scene = |name: &str, body: &str| {
+        let text = format!(
+            "contacts = \"blow.jsonl\"\ntail_s = 0.3\n[[body]]\nname = \"b\"\nmaterial = \"steel\"\n{body}\n[audio]\ngain = 1.0\n"
+        );
+        std::fs::write(at.join(format!("{name}.toml")), text).unwrap();
+        asperity(at, &["render", &format!("{name}.toml"), "-o", name])
+    };
+    let bytes = |name: &str| std::fs::read(at.join(format!("{name}.audio.wav"))).unwrap();
+    for (size, options) in [("", &[][..]), ("size_m = 0.2", &["--size", "0.2"])] {
+        let arguments =
+            [&["modes", "bar.obj", "--material", "steel", "-o", "bar.modes.json"], options].concat();
+        assert!(asperity(at, &arguments).status.success());
+        assert!(scene("filed", "modes = \"bar.modes.json\"").status.success());
+        let output = scene("solved", &format!("shape = \"bar.obj\"\n{size}"));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(bytes("filed") == bytes("solved"), "{size}");
+    }
+    std::fs::write(at.join("flat.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    for (body, parts) in [
+        ("shape = \"flat.obj\"", ["body \"b\": shape", "flat.obj"]),
+        ("shape = \"none.obj\"", ["body \"b\": shape", "none.obj"]),
+        ("shape = \"bar.obj\"\nmodes = \"bar.modes.json\"", ["shape", "beside modes"]),
+        ("shape = \"bar.obj\"\nstock = \"bar\"", ["shape", "beside stock"]),
+    ] {
+        let output = scene("refused", body);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), told.lines().count()), (Some(1), 1), "{told}");
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    }
+}

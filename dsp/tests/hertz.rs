@@ -333,6 +333,21 @@ fn the_ring_wraps_clamps_and_ignores_what_is_no_pulse() {
 }
 
 #[test]
+fn a_pulse_is_the_same_wherever_in_the_ring_it_begins() {
+    let at = |onset: u64, offset: f64, samples: f64| {
+        let mut ring = [0.0; 64];
+        HertzPulse::elastic(1.0, samples).deposit(&mut ring, onset, offset, 1.0);
+        ring.rotate_left((onset % 64) as usize);
+        ring
+    };
+    let mut rng = Rng::new(57);
+    for onset in (0..200).chain(4000..4200).chain(u64::MAX - 200..u64::MAX) {
+        let (offset, samples) = (rng.uniform(), 1.0 + 50.0 * rng.uniform());
+        assert_eq!(at(onset, offset, samples), at(0, offset, samples), "onset {onset}");
+    }
+}
+
+#[test]
 fn reading_clears_the_ring_and_lets_no_denormal_through() {
     let mut ring = vec![0.0; 16];
     ring[14] = 2.0;
