@@ -273,8 +273,8 @@ impl Press {
                     }
                     self.ring[area.index(x, y)] = ring + 1;
                     let out = [x as f64 - cut.middle[0], y as f64 - cut.middle[1]];
-                    let ahead =
-                        (out[0] * direction[0] + out[1] * direction[1]) / libm::hypot(out[0], out[1]).max(1.0);
+                    let ahead = (out[0] * direction[0] + out[1] * direction[1])
+                        / libm::hypot(out[0], out[1]).max(1.0);
                     total += weight * (1.0 + ahead);
                     self.rim.push((at, total));
                 }
