@@ -211,3 +211,36 @@ fn documentation_comments_begin_with_a_noun() {
     }
     assert!(found.is_empty(), "comments begin without a noun: {found:#?}");
 }
+
+/// Functions of the standard library whose last digits are the platform's.
+const OF_THE_PLATFORM: [&str; 19] = [
+    "acos", "asin", "atan", "atan2", "cbrt", "cos", "cosh", "exp", "exp2", "exp_m1", "hypot", "ln", "log10",
+    "log2", "powf", "sin", "sin_cos", "sinh", "tan",
+];
+
+#[test]
+fn what_renders_takes_its_functions_from_libm() {
+    let mut found = Vec::new();
+    for path in sources() {
+        let inside = path.strip_prefix(root()).unwrap();
+        let renders = ["src", "dsp/src", "surface/src"].iter().any(|folder| inside.starts_with(folder));
+        if !renders || inside.ends_with("tests.rs") || inside.iter().any(|part| part == "tests") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.lines().take_while(|line| *line != "#[cfg(test)]").enumerate();
+        for (number, line) in code.filter(|(_, line)| !line.trim_start().starts_with("//")) {
+            // Called on a number, called by its path, handed over by its path.
+            let calls = |name: &&str| {
+                let by_path = ["f64::", "f32::"].map(|kind| format!("{kind}{name}"));
+                let ends = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+                line.contains(&format!(".{name}("))
+                    || by_path.iter().any(|path| line.split(path.as_str()).skip(1).any(ends))
+            };
+            if OF_THE_PLATFORM.iter().any(calls) {
+                found.push(format!("{}:{}", inside.display(), number + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "write libm::…, whose digits are the same everywhere: {found:#?}");
+}

@@ -87,7 +87,7 @@ pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64, most: usize, order:
         *ranked = heard(mode, index, loudest, loudest_db_spl);
     }
     if count > most {
-        order.sort_unstable_by(|a, b| a.hidden().total_cmp(&b.hidden()).then(a.index.cmp(&b.index)));
+        sort(order, &|ranked| [ranked.hidden(), 0.0]);
     }
     let count = count.min(most);
     let (order, others) = order.split_at_mut(count);
@@ -111,7 +111,16 @@ pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64, most: usize, order:
         others.iter_mut().for_each(|other| excite(heard, other, 1.0));
     }
     others.iter_mut().for_each(|ranked| ranked.margin_db = 10.0 * libm::log10(ranked.hidden()));
-    others.sort_unstable_by(|a, b| a.margin_db.total_cmp(&b.margin_db).then(a.index.cmp(&b.index)));
+    sort(others, &|ranked| [ranked.margin_db, 0.0]);
+}
+
+/// Puts modes in the rising order of two keys, then in that in which they were given; allocates
+/// nothing. It is compiled once, not for each way of sorting.
+pub(crate) fn sort(order: &mut [Ranked], keys: &dyn Fn(&Ranked) -> [f64; 2]) {
+    order.sort_unstable_by(|a, b| {
+        let (of_a, of_b) = (keys(a), keys(b));
+        of_a[0].total_cmp(&of_b[0]).then(of_a[1].total_cmp(&of_b[1])).then(a.index.cmp(&b.index))
+    });
 }
 
 /// Number of modes of an order that are left when all that are `safety_db` below what hides them

@@ -80,7 +80,7 @@ struct Written {
     #[serde(default)]
     source: BTreeMap<String, String>,
     #[serde(default, rename = "error")]
-    _error: BTreeMap<String, serde::de::IgnoredAny>,
+    _error: toml::Table,
 }
 
 /// The profiles that ship with the engine, by name.

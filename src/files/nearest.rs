@@ -37,7 +37,7 @@ const SYNONYMS: [(&str, &str); 28] = [
 /// near.
 #[must_use]
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
-    let plain = |word: &str| word.to_lowercase().replace(['-', ' ', '_'], "");
+    let plain = |word: &str| word.to_ascii_lowercase().replace(['-', ' ', '_'], "");
     let meant = plain(word);
     if let Some(same) = known.iter().find(|known| plain(known) == meant) {
         return Some(same);

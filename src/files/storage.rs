@@ -59,8 +59,7 @@ impl Files for Disk {
 /// Files and decoded pictures in memory, by path; `a/../b` and `./b` are `b`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Memory {
-    files: BTreeMap<PathBuf, Vec<u8>>,
-    pictures: BTreeMap<PathBuf, Picture>,
+    entries: BTreeMap<PathBuf, (Option<Vec<u8>>, Option<Picture>)>,
 }
 
 impl Memory {
@@ -72,22 +71,23 @@ impl Memory {
 
     /// Adds a file, in place of one of the same path.
     pub fn add(&mut self, path: impl AsRef<Path>, bytes: impl Into<Vec<u8>>) {
-        self.files.insert(plain(path.as_ref()), bytes.into());
+        self.entries.entry(plain(path.as_ref())).or_default().0 = Some(bytes.into());
     }
 
     /// Adds a picture that is decoded already, in place of one of the same path.
     pub fn add_picture(&mut self, path: impl AsRef<Path>, picture: Picture) {
-        self.pictures.insert(plain(path.as_ref()), picture);
+        self.entries.entry(plain(path.as_ref())).or_default().1 = Some(picture);
     }
 }
 
 impl Files for Memory {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        self.files.get(&plain(path)).cloned().ok_or(io::ErrorKind::NotFound.into())
+        let (bytes, _) = self.entries.get(&plain(path)).ok_or(io::ErrorKind::NotFound)?;
+        bytes.clone().ok_or(io::ErrorKind::NotFound.into())
     }
 
     fn picture(&self, path: &Path) -> Option<Cow<'_, Picture>> {
-        self.pictures.get(&plain(path)).map(Cow::Borrowed)
+        self.entries.get(&plain(path)).and_then(|(_, picture)| picture.as_ref()).map(Cow::Borrowed)
     }
 }
 

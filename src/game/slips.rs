@@ -147,7 +147,8 @@ impl Blows {
             return;
         }
         let step_s = time_s - self.time_s;
-        let is_even = |before_s: f64| before_s == 0.0 || (step_s / before_s).ln().abs() < ALIKE.ln();
+        let is_even =
+            |before_s: f64| before_s == 0.0 || libm::log(step_s / before_s).abs() < libm::log(ALIKE);
         let [now, before] = self.count;
         let goes_on = (0.0..LONGEST_STEP_S).contains(&step_s) && is_even(self.step_s);
         let goes_on = goes_on && (before == 0 || now == before);

@@ -224,7 +224,7 @@ impl Tip {
         self.tracked_m_s = speed;
         let a = self.proxy_m - from_m + lag_m;
         let b = self.velocity_m_s - speed + rate * a;
-        let decayed = (-rate * dt_s).exp();
+        let decayed = libm::exp(-rate * dt_s);
         let rest = (a + b * dt_s) * decayed;
         self.proxy_m = tracked_m - lag_m + rest;
         self.velocity_m_s = speed + b * decayed - rate * rest;

@@ -53,7 +53,7 @@ impl Click {
             let peak = self.peak(&part);
             let (mask, length) = (ring.len() - 1, part.contact_time_s * sample_rate_hz);
             // The mean over a sample, so that nothing is left when it is over, however short it is.
-            let risen = |t: f64| length / PI * (PI * (t / length).clamp(0.0, 1.0)).sin();
+            let risen = |t: f64| length / PI * libm::sin(PI * (t / length).clamp(0.0, 1.0));
             for i in 0..Self::samples(&part, sample_rate_hz).min(ring.len() as u64) {
                 let t = i as f64 - offset;
                 ring[sample.wrapping_add(i) as usize & mask] += (peak * (risen(t + 1.0) - risen(t))) as f32;

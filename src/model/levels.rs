@@ -54,6 +54,6 @@ pub(crate) const LEAST_POWER: f64 = 1.0 / 16.0;
 /// Power of the mean level, in decibels, of strokes in all directions; none where all are silent.
 pub(crate) fn mean_power(powers: &[f64]) -> Option<f64> {
     let least = LEAST_POWER * powers.iter().copied().fold(0.0, f64::max);
-    let logs = powers.iter().map(|power| power.max(least).ln()).sum::<f64>();
-    (least > 0.0).then(|| (logs / powers.len() as f64).exp())
+    let logs = powers.iter().map(|power| libm::log(power.max(least))).sum::<f64>();
+    (least > 0.0).then(|| libm::exp(logs / powers.len() as f64))
 }

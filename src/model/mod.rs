@@ -27,6 +27,7 @@ pub(crate) mod preset;
 pub(crate) mod probe;
 pub(crate) mod radiating;
 pub(crate) mod residual;
+pub(crate) mod rising;
 pub(crate) mod stamp;
 pub(crate) mod stock;
 pub(crate) mod strike_field;

@@ -9,6 +9,7 @@ use crate::model::diffuse::Diffuse;
 use crate::model::material::Material;
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
+use crate::model::rising::rising;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
 use std::path::PathBuf;
@@ -237,8 +238,7 @@ impl ModalModel {
         let mut keep = vec![false; self.modes.len()];
         let mut audible = vec![false; self.modes.len()];
         // Slow decays first: maskers come before what they mask.
-        let mut order: Vec<usize> = (0..self.modes.len()).collect();
-        order.sort_by(|&a, &b| self.modes[a].decay_per_s.total_cmp(&self.modes[b].decay_per_s));
+        let order = rising(&self.modes.iter().map(|mode| mode.decay_per_s).collect::<Vec<_>>());
         let positions = (0..self.position_count()).map(|position| self.modes_at(position).collect());
         for at in positions.chain(self.shapes.is_some().then(|| self.modes_anywhere())) {
             let at: Vec<Mode> = at;

@@ -71,8 +71,8 @@ impl UvMapping {
             }
             Self::ByNormal { span_m } => by_normal(span_m),
             Self::Sphere { radius_m, span_m } => {
-                let theta = (place.y / place.length()).clamp(-1.0, 1.0).acos();
-                let wide = theta.sin().max(1e-3);
+                let theta = libm::acos((place.y / place.length()).clamp(-1.0, 1.0));
+                let wide = libm::sin(theta).max(1e-3);
                 let meridian = |east: DVec3| east.cross(place).normalize_or_zero();
                 tangent(place, (radius_m, span_m), [1.0 / wide, radius_m * theta / span_m[1]], meridian)
             }
@@ -96,8 +96,8 @@ fn tangent(
     [widened, v]: [f64; 2],
     down: impl Fn(DVec3) -> DVec3,
 ) -> Option<UvPlace> {
-    let about = place.x.atan2(place.z);
-    let east = DVec3::new(about.cos(), 0.0, -about.sin());
+    let about = libm::atan2(place.x, place.z);
+    let east = DVec3::new(libm::cos(about), 0.0, -libm::sin(about));
     let u = radius_m * about / span_m[0];
     let corners = [place, place + east, place + down(east)].map(|corner| corner.to_array());
     UvTriangle::new(corners, [[u, v], [u + widened / span_m[0], v], [u, v + 1.0 / span_m[1]]])

@@ -6,6 +6,7 @@
 //! gets the coefficients back that it had, to the bit.
 
 use crate::model::mode_shapes::ModeShapes;
+use crate::model::rising::rising;
 use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::{Bank, ContactKey};
 use asperity_dsp::held::{Hold, Pole, held};
@@ -74,8 +75,7 @@ impl Holding {
         groups: &[ModeGroup],
         sample_rate_hz: f64,
     ) -> Self {
-        let mut order: Box<[usize]> = (0..modes.len()).collect();
-        order.sort_by(|a, b| modes[*a].1.frequency_hz.total_cmp(&modes[*b].1.frequency_hz));
+        let order = rising(&modes.iter().map(|(_, mode)| mode.frequency_hz).collect::<Vec<_>>());
         let mut rank = vec![0; modes.len()].into_boxed_slice();
         order.iter().enumerate().for_each(|(at, mode)| rank[*mode] = at);
         let pole = |mode: &Mode| Pole { decay_per_s: mode.decay_per_s, frequency_hz: mode.frequency_hz };
@@ -96,7 +96,7 @@ impl Holding {
                 probe: Probe::default(),
                 phi_per_sqrt_kg: vec![0.0; modes.len()].into(),
             }),
-            order,
+            order: order.into(),
             due: None,
             changed: false,
             sample_rate_hz,

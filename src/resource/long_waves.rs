@@ -95,7 +95,7 @@ fn felt_m_s2(wavelength_m: f64, rms_m: f64) -> f64 {
     let followed_m = FOLLOWED * wavelength_m * wavelength_m / (4.0 * PI * PI * BALL_M);
     let frequency_hz = SPEED_M_S / wavelength_m;
     let (x, omega) = (frequency_hz / TOOL_HZ, 2.0 * PI * frequency_hz);
-    rms_m.min(followed_m) * omega * omega / (1.0 - x * x).hypot(x / QUALITY)
+    rms_m.min(followed_m) * omega * omega / libm::hypot(1.0 - x * x, x / QUALITY)
 }
 
 /// Mean square of the fourth differences that a wave of an octave fills, m², along u and v, as of

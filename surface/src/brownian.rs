@@ -140,7 +140,7 @@ fn colour(eigenvalues: &mut [Complex], rng: &mut Rng) {
 /// −(chord²)^H on a circle of n samples is a covariance up to a constant, which has no spectrum.
 fn circle(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let mut field: Vec<Complex> =
-        (0..n).map(|i| Complex::new(-sine_squared(i, n).powf(hurst), 0.0)).collect();
+        (0..n).map(|i| Complex::new(-libm::pow(sine_squared(i, n), hurst), 0.0)).collect();
     forward_lines(&mut field, n);
     field[0] = Complex::default();
     colour(&mut field, rng);
@@ -152,7 +152,7 @@ fn circle(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
 fn torus(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let chord: Vec<f64> = (0..n).map(|i| sine_squared(i, n)).collect();
     let mut field: Vec<Complex> =
-        (0..n * n).map(|i| Complex::new(-(chord[i % n] + chord[i / n]).powf(hurst), 0.0)).collect();
+        (0..n * n).map(|i| Complex::new(-libm::pow(chord[i % n] + chord[i / n], hurst), 0.0)).collect();
     forward_2d(&mut field, n);
     field[0] = Complex::default();
     colour(&mut field, rng);
@@ -161,13 +161,13 @@ fn torus(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
 }
 
 fn sine_squared(i: usize, n: usize) -> f64 {
-    (core::f64::consts::PI * i as f64 / n as f64).sin().powi(2)
+    libm::sin(core::f64::consts::PI * i as f64 / n as f64).powi(2)
 }
 
 /// Davies–Harte: fractional Gaussian noise on a circle of 2n increments, of which n − 1 are added
 /// up.
 fn line(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
-    let power = |k: f64| k.abs().powf(2.0 * hurst);
+    let power = |k: f64| libm::pow(k.abs(), 2.0 * hurst);
     let covariance = |k: f64| 0.5 * (power(k + 1.0) - 2.0 * power(k) + power(k - 1.0));
     let mut field: Vec<Complex> =
         (0..2 * n).map(|i| Complex::new(covariance(i.min(2 * n - i) as f64), 0.0)).collect();
@@ -209,7 +209,7 @@ impl Stein {
 
     fn at(&self, r: f64) -> f64 {
         if r <= 1.0 {
-            self.c0 - r.powf(self.alpha) + self.c2 * r * r
+            self.c0 - libm::pow(r, self.alpha) + self.c2 * r * r
         } else if r <= self.radius {
             self.beta * (self.radius - r).powi(3) / r
         } else {
@@ -226,7 +226,7 @@ fn plane(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let mut field: Vec<Complex> = (0..m * m)
         .map(|i| {
             let lag = |k: usize| k.min(m - k) as f64 * step;
-            Complex::new(stein.at(lag(i % m).hypot(lag(i / m))), 0.0)
+            Complex::new(stein.at(libm::hypot(lag(i % m), lag(i / m))), 0.0)
         })
         .collect();
     forward_2d(&mut field, m);

@@ -104,18 +104,18 @@ impl GratingParameters {
         let period = |x_m: f64| x_m / self.pitch_m - (x_m / self.pitch_m).round();
         let (x, y, apart) = (period(u_m), period(v_m), footprint_m / self.pitch_m);
         let (level, slope) = match self.kind {
-            GratingKind::Sine => (0.5 + 0.5 * (TAU * x).sin(), [PI * (TAU * x).cos(), 0.0]),
+            GratingKind::Sine => (0.5 + 0.5 * libm::sin(TAU * x), [PI * libm::cos(TAU * x), 0.0]),
             GratingKind::Ridges => {
                 let width = self.flank().max(2.0 * apart).min(self.duty.min(1.0 - self.duty));
                 let t = ((0.5 * self.duty - x.abs()) / width + 0.5).clamp(0.0, 1.0);
-                let fall = -0.5 * PI / width * (PI * t).sin() * 1f64.copysign(x);
-                (0.5 - 0.5 * (PI * t).cos(), [fall, 0.0])
+                let fall = -0.5 * PI / width * libm::sin(PI * t) * 1f64.copysign(x);
+                (0.5 - 0.5 * libm::cos(PI * t), [fall, 0.0])
             }
             GratingKind::Dots => {
-                let r = x.hypot(y);
+                let r = libm::hypot(x, y);
                 let turn = PI * (r / self.duty).min(0.5);
-                let fall = if r > 0.0 { -PI / self.duty * (2.0 * turn).sin() / r } else { 0.0 };
-                (turn.cos().powi(2), [fall * x, fall * y])
+                let fall = if r > 0.0 { -PI / self.duty * libm::sin(2.0 * turn) / r } else { 0.0 };
+                (libm::cos(turn).powi(2), [fall * x, fall * y])
             }
         };
         let left = ((FADES[1] - apart) / (FADES[1] - FADES[0])).clamp(0.0, 1.0);

@@ -205,7 +205,8 @@ test('a bowl solved in the page has the modes that the program finds, within 2 %
     assert.ok(Math.abs(ours.shapes.gains[i] / theirs.shapes.gains[i] - 1) < 0.05, `gain ${i}`);
   });
   for (const bytes of [encode(''), encode('v 0 0'), encode('f 1 2 3'), new Uint8Array(1000)]) assert.throws(() => solve(solver, { name: 'x.obj', bytes }), /x\.obj/);
-  assert.throws(() => solve(solver, { name: 'x.ply', bytes: encode('ply') }), /\.obj, \.stl/);
+  assert.throws(() => solve(solver, { name: 'x.ply', bytes: encode('ply') }), /x\.ply: is no whole PLY/);
+  assert.throws(() => solve(solver, { name: 'x.pdf', bytes: encode('%PDF') }), /\.obj, \.stl/);
 });
 
 test('a stroke goes into a link and comes back as it was played, however long it was', async () => {

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { browser, drag, host, line, open, ready } from './host.mjs';
 import { DIST } from './native.mjs';
 
-test('sound begins within a second of the first touch and 650 kB, with no error and no request to anybody else', async (t) => {
+test('sound begins within a second of the first touch and 620 kB, with no error and no request to anybody else', async (t) => {
   const [server, chromium] = [await host(join(DIST, 'page')), await browser()];
   t.after(async () => { await chromium.close(); server.close(); });
   const { page, wrong } = await open(chromium, server.url);
@@ -27,6 +27,6 @@ test('sound begins within a second of the first touch and 650 kB, with no error 
   const sent = server.sent.reduce((bytes, { bytes: more }) => bytes + more, 0);
   t.diagnostic(`${took.toFixed(0)} ms, ${sent} bytes: ${server.sent.map(({ path }) => path).join(' ')}`);
   assert.ok(took < 1000, `${took} ms`);
-  assert.ok(sent > 400_000 && sent <= 650_000, `${sent} bytes`);
+  assert.ok(sent > 400_000 && sent <= 620_000, `${sent} bytes`);
   assert.deepEqual(wrong, []);
 });

@@ -19,7 +19,7 @@
 //! behind them, hidden by those or not.
 
 use super::{LANES, ringing_s};
-use crate::masking::{Ranked, audible_count, perceptual_order};
+use crate::masking::{self, Ranked, audible_count, perceptual_order};
 use crate::mode::Mode;
 
 /// Levels of modes left out: none, and what is not missed.
@@ -59,18 +59,14 @@ pub fn shedding_order(
     let groups = count.div_ceil(LANES);
     let mut levels = [groups; MODE_LEVELS];
     let rings = |ranked: &Ranked| ringing_s(&modes[ranked.index], impulse_n_s);
-    let hz = |ranked: &Ranked| modes[ranked.index].frequency_hz;
-    let by_ringing = |a: &Ranked, b: &Ranked| {
-        let by_ringing = rings(b).total_cmp(&rings(a)).then(hz(a).total_cmp(&hz(b)));
-        by_ringing.then(a.index.cmp(&b.index))
-    };
+    let by_ringing = |ranked: &Ranked| [-rings(ranked), modes[ranked.index].frequency_hz];
     if groups > 1 {
         perceptual_order(modes, loudest_db_spl, RANKED, order);
         let needed = audible_count(order, SAFETY_DB[1]).div_ceil(LANES).max(1);
         levels[1] = needed.min(most_at(1, groups)).max(1);
         let (all, kept) = ((needed * LANES).min(count), (levels[1] * LANES).min(count));
         if levels[1] < needed && ringing_keeps_more(modes, &order[..all], kept, rings) {
-            order[..all].sort_unstable_by(by_ringing);
+            masking::sort(&mut order[..all], &by_ringing);
         }
     } else {
         order.iter_mut().enumerate().for_each(|(index, ranked)| ranked.index = index);
@@ -79,7 +75,7 @@ pub fn shedding_order(
     for kept in levels.iter().rev() {
         let until = (kept * LANES).min(count);
         if let Some(section) = order.get_mut(from..until) {
-            section.sort_unstable_by(by_ringing);
+            masking::sort(section, &by_ringing);
         }
         from = until;
     }

@@ -16,7 +16,7 @@ const METER_FALL_S: f64 = 0.5;
 
 impl Meter {
     pub(super) fn new(sample_rate_hz: f64) -> Self {
-        let fall = 0.1f64.powf(MAX_BLOCK as f64 / (METER_FALL_S * sample_rate_hz)) as f32;
+        let fall = libm::pow(0.1, MAX_BLOCK as f64 / (METER_FALL_S * sample_rate_hz)) as f32;
         Self { peak: 0.0, now: 0.0, fall }
     }
 

@@ -212,7 +212,7 @@ impl Renderer {
         let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
         let limiters = channels.chain(self.buses.iter().filter_map(|bus| bus.limiter.as_ref()));
         let deepest = limiters.map(|(_, state)| state.deepest()).fold(1.0, f32::min);
-        (-20.0 * f64::from(deepest).log10()).max(0.0)
+        (-20.0 * libm::log10(f64::from(deepest))).max(0.0)
     }
 
     /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.

@@ -20,6 +20,7 @@
 use super::{Contradiction, Likely};
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::id::SurfaceId;
+use crate::model::rising::rising;
 use std::collections::HashMap;
 
 /// Slower motion is not compared, m/s: what rests jitters.
@@ -151,10 +152,10 @@ impl Motions {
 
     /// Contradictions found so far, surface by surface.
     pub(crate) fn contradictions(&self) -> Vec<Contradiction> {
-        let mut told: Vec<_> =
+        let told: Vec<_> =
             self.tallies.iter().flat_map(|(surface, tally)| tally.contradictions(*surface)).collect();
-        told.sort_by_key(|contradiction| contradiction.surface().index());
-        told
+        let surfaces: Vec<_> = told.iter().map(|told| told.surface().index() as f64).collect();
+        rising(&surfaces).into_iter().map(|place| told[place]).collect()
     }
 }
 
@@ -245,7 +246,7 @@ impl Tally {
         let known = || factors.iter().flatten();
         if known().any(|factor| !(1.0 / FACTOR..=FACTOR).contains(factor)) {
             let velocity_m_s = self.said_m / self.seconds;
-            let mean = known().product::<f64>().powf(1.0 / known().count() as f64);
+            let mean = libm::pow(known().product(), 1.0 / known().count() as f64);
             let likely = self.likely(factors);
             return Some(Contradiction::Speed { surface, uv_m_s: velocity_m_s * mean, velocity_m_s, likely });
         }
@@ -270,12 +271,12 @@ impl Tally {
             let axes = factors
                 .iter()
                 .zip(expected)
-                .filter_map(|(factor, expected)| Some((factor.as_ref()? / expected).ln().abs()));
+                .filter_map(|(factor, expected)| Some(libm::log(factor.as_ref()? / expected).abs()));
             axes.fold(0.0, f64::max)
         };
         let nearest = candidates.iter().min_by(|a, b| off(&a.1).total_cmp(&off(&b.1)));
         match nearest {
-            Some((likely, expected)) if off(expected) < ALIKE.ln() => *likely,
+            Some((likely, expected)) if off(expected) < libm::log(ALIKE) => *likely,
             _ if factors.iter().flatten().all(|factor| *factor > 8.0) => Likely::UvInTexels,
             _ => Likely::AnotherSize([0, 1].map(|c| factors[c].map(|factor| size_m[c] / factor))),
         }
@@ -306,7 +307,7 @@ impl Sheet {
 
 impl Factors {
     fn add(&mut self, factor: f64) {
-        let field = (factor.abs().log2() * FIELDS_AN_OCTAVE + 0.5 * FIELDS as f64).round();
+        let field = (libm::log2(factor.abs()) * FIELDS_AN_OCTAVE + 0.5 * FIELDS as f64).round();
         self.fields[(field.max(0.0) as usize).min(FIELDS - 1)] += 1;
         self.count += 1;
         self.against += u32::from(factor < 0.0);
@@ -329,10 +330,10 @@ impl Factors {
         }
         let log2 = |field: usize| (field as f64 - 0.5 * FIELDS as f64) / FIELDS_AN_OCTAVE;
         let sum: f64 = near().map(|field| f64::from(self.fields[field]) * log2(field)).sum();
-        Some((sum / f64::from(count)).exp2())
+        Some(libm::exp2(sum / f64::from(count)))
     }
 }
 
 fn length([u, v]: [f64; 2]) -> f64 {
-    u.hypot(v)
+    libm::hypot(u, v)
 }

@@ -53,7 +53,7 @@ impl Spin {
 
 /// Velocity that a slip has beyond that of the path, m/s.
 fn beyond(path_m_s: [f64; 2], slip_m_s: f64) -> [f64; 2] {
-    let speed_m_s = path_m_s[0].hypot(path_m_s[1]);
+    let speed_m_s = libm::hypot(path_m_s[0], path_m_s[1]);
     let beyond_m_s = slip_m_s - speed_m_s;
     if beyond_m_s <= NO_SPIN_M_S {
         return [0.0; 2];

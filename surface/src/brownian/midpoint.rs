@@ -106,7 +106,7 @@ pub fn raw_surface(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let mut square = Grid::new(span, span + 1);
     // Corners (0,0), (1,0), (0,1), (1,1) of the unit square: variances 0, 1, 1, 2^H; the two near
     // ones have covariance ρ = 1 − 2^{H−1}, each has c = 2^{H−1} with the far one.
-    let c = 2.0_f64.powf(hurst - 1.0);
+    let c = libm::exp2(hurst - 1.0);
     let rho = 1.0 - c;
     let right = rng.normal();
     let below = rho * right + (1.0 - rho * rho).sqrt() * rng.normal();
@@ -159,7 +159,7 @@ impl Grid {
         let prediction = by.given(known);
         let mean = prediction.weights.iter().filter_map(|&(offset, w)| Some(w * self.values[place(offset)?]));
         let mean = mean.sum::<f64>();
-        let deviation = prediction.deviation * (half as f64 / (self.width - 1) as f64).powf(by.hurst);
+        let deviation = prediction.deviation * libm::pow(half as f64 / (self.width - 1) as f64, by.hurst);
         self.values[y * self.width + x] = mean + deviation * rng.normal();
     }
 }
@@ -197,7 +197,7 @@ impl Prediction {
     fn new(hurst: f64, known: Vec<[isize; 2]>) -> Self {
         let law = |a: [isize; 2], b: [isize; 2]| {
             let squared = (a[0] - b[0]).pow(2) + (a[1] - b[1]).pow(2);
-            (squared as f64).powf(hurst)
+            libm::pow(squared as f64, hurst)
         };
         let n = known.len();
         // Rows of the equations in the module's head, the right side in the last column.

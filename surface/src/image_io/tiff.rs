@@ -38,7 +38,7 @@ pub(super) fn read(file: &mut dyn Source) -> Result<Option<Picture>, Problem> {
 
 /// A whole number of so many bits as 0–1.
 fn white(number: f64, bits: i32) -> f32 {
-    (number / (f64::from(bits).exp2() - 1.0)) as f32
+    (number / (libm::exp2(f64::from(bits)) - 1.0)) as f32
 }
 
 fn translate(error: tiff::TiffError) -> Problem {

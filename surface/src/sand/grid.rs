@@ -159,7 +159,7 @@ impl SandGrid {
         }
         let run = self.cell_m * UNITS_PER_M;
         let slope = (f64::from(axis) / run).max(f64::from(diagonal) / (run * core::f64::consts::SQRT_2));
-        slope.atan().to_degrees()
+        libm::atan(slope).to_degrees()
     }
 
     /// A picture of the heights.

@@ -261,7 +261,7 @@ impl Press {
         for ring in 1..=rings {
             let t = (f64::from(ring) - 0.5) / f64::from(rings);
             let r = RIM[0] + t * (RIM[1] - RIM[0]);
-            let weight = (r * r).sin() - 0.53;
+            let weight = libm::sin(r * r) - 0.53;
             for y in near.rows[0]..=near.rows[1] {
                 for x in near.columns[0]..=near.columns[1] {
                     let at = grid.index(x, y);
@@ -273,8 +273,8 @@ impl Press {
                     }
                     self.ring[area.index(x, y)] = ring + 1;
                     let out = [x as f64 - cut.middle[0], y as f64 - cut.middle[1]];
-                    let ahead =
-                        (out[0] * direction[0] + out[1] * direction[1]) / out[0].hypot(out[1]).max(1.0);
+                    let ahead = (out[0] * direction[0] + out[1] * direction[1])
+                        / libm::hypot(out[0], out[1]).max(1.0);
                     total += weight * (1.0 + ahead);
                     self.rim.push((at, total));
                 }
