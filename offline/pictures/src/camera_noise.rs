@@ -46,9 +46,9 @@ const OCTAVES: usize = 5;
 const FEWEST_WAVES: f64 = 40.0;
 /// Most over least power of octaves that are level for certain, and of those that are not. Walls
 /// under a mosaic, sharpened, blurred, denoised, reduced or as JPEG 1.0–1.8 in 400 × 400 texels,
-/// where chance alone makes 1.4 of the longest; squares of ten texels under noise 1.85–2.9.
-const LEVEL: f64 = 1.6;
-const NOT_LEVEL: f64 = 1.85;
+/// where chance alone makes 1.4 of the longest; squares of ten texels under noise 1.65–2.9.
+const LEVEL: f64 = 1.5;
+const NOT_LEVEL: f64 = 1.65;
 /// Factor over the mean of level octaves that is taken off: a mosaic and JPEG leave them uneven by
 /// a fifth.
 const MARGIN: f64 = 1.3;
@@ -359,8 +359,8 @@ mod tests {
                 });
             }
             let lit = Raster::from_fn(400, 400, |x, y| 0.7 - 0.07 * x as f64 / 400.0 + wall.at(x, y));
-            let light = crate::symmetry::detrended(&lit);
-            let quiet = crate::symmetry::detrended(&without_camera_noise(&lit).picture);
+            let light = detrended(&lit);
+            let quiet = detrended(&without_camera_noise(&lit).picture);
             assert!(rms(&quiet) < 0.2 * rms(&light), "{seed}: {} of {}", rms(&quiet), rms(&light));
         }
     }
