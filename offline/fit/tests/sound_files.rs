@@ -208,6 +208,17 @@ fn a_wav_file_that_breaks_off_is_a_recording_that_says_so() {
     assert!(cut.truncated && cut.samples.len() == 2000, "{} {}", cut.truncated, cut.samples.len());
 }
 
+/// Refused as "without a data chunk" before; other readers skip what is no pad byte.
+#[test]
+fn a_wav_file_whose_odd_chunk_has_no_pad_byte_is_read() {
+    for odd in [chunk(b"LIST", b"INFOx"), chunk(b"LIST", b"INFOx")[..13].to_vec()] {
+        let chunks = [chunk(b"fmt ", &format(1, 16, 4)), odd, chunk(b"data", &pcm16())];
+        let sound = read("odd", &riff(b"RIFF", &chunks)).unwrap();
+        let plain = read("plain", &riff(b"RIFF", &[chunks[0].clone(), chunks[2].clone()])).unwrap();
+        assert_eq!((sound.samples, sound.truncated), (plain.samples, false));
+    }
+}
+
 /// Reported as "truncated" and copied again in vain: a file that was written into a pipe.
 #[test]
 fn a_wav_file_of_a_program_that_could_not_know_its_length_is_not_called_cut_off() {

@@ -1,9 +1,10 @@
 //! A mesh becomes a body that rings: solved, with its shapes on a triangulation of its surface.
 
-use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve};
+use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve_within};
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
 use crate::facets::round_out;
+use crate::factor::MOST_STEPS;
 use crate::filling::Body;
 use crate::mesh::Mesh;
 use crate::repair::Cracks;
@@ -180,7 +181,7 @@ fn from_volume(
     if let Some(surface) = curved {
         round_out(&mut volume, &TriangleTree::new(&surface.all_corners()));
     }
-    let modes = solved(&volume, material, &making.wanted, progress)?;
+    let modes = solved(MOST_STEPS, &volume, material, &making.wanted, progress)?;
     if let Some(top) = modes.1.frequency_hz.last() {
         tell_coarse(&volume, material, *top, &mut told);
     }
@@ -229,7 +230,8 @@ fn from_surface(
     }
     let mut repairs = Vec::new();
     let mut volume = body.fill(spacing_m, &mut repairs)?;
-    let mut modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 * done))?;
+    let first = &mut |done| progress(0.6 * done);
+    let mut modes = solved(MOST_STEPS, &volume, material, &making.wanted, first)?;
     let finer_m = modes.1.frequency_hz.last().map_or(spacing_m, |top| wave(*top));
     if finer_m < 0.95 * spacing_m {
         let finest_m = body.spacing_m(fineness.most_unknowns).max(finer_m);
@@ -240,7 +242,8 @@ fn from_surface(
                 1e3 * finer_m
             ));
         }
-        // Where that is too fine for the memory granted, half of the way.
+        // Where that is too fine for the work that is left, half of the way.
+        let left = MOST_STEPS - modes.1.steps;
         for at_m in [finest_m, (finest_m * spacing_m).sqrt()] {
             if at_m >= 0.95 * spacing_m {
                 break;
@@ -248,7 +251,7 @@ fn from_surface(
             let mut repairs_there = Vec::new();
             let finer = body.fill(at_m, &mut repairs_there).and_then(|volume| {
                 let progress = &mut |done| progress(0.6 + 0.4 * done);
-                Ok((solved(&volume, material, &making.wanted, progress)?, volume))
+                Ok((solved(left, &volume, material, &making.wanted, progress)?, volume))
             });
             match finer {
                 Ok(finer) => {
@@ -268,13 +271,14 @@ fn from_surface(
 }
 
 fn solved(
+    most_steps: f64,
     volume: &VolumeMesh,
     material: &Elastic,
     wanted: &Wanted,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(System, Eigenmodes), ShapeError> {
     let system = System::assemble(volume, material);
-    let modes = solve(&system, material, wanted, progress)?;
+    let modes = solve_within(most_steps, &system, material, wanted, progress)?;
     Ok((system, modes))
 }
 

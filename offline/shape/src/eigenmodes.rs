@@ -5,7 +5,7 @@
 
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
-use crate::factor::Symbolic;
+use crate::factor::{MOST_STEPS, Symbolic};
 use crate::lanczos::{Lanczos, Ritz};
 use crate::system::System;
 use crate::vector::longest_side;
@@ -37,20 +37,36 @@ pub struct Eigenmodes {
     pub motions: Mat<f64>,
     /// Greatest ‖Kφ − ω²Mφ‖ / ‖Kφ‖ of them.
     pub worst_residual: f64,
+    /// Multiplications that a factor took.
+    pub steps: f64,
 }
 
 /// Solves for the modes of a body; `progress` hears the part done, 0 to 1.
 ///
 /// # Errors
-/// When memory runs out, more than [`MOST_MODES`] modes are below the frequency asked for, the body
-/// hangs together by points only, or a mode does not reach its accuracy.
+/// Those of [`solve_within`], of the work that a minute allows.
 pub fn solve(
     system: &System,
     material: &Elastic,
     wanted: &Wanted,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Eigenmodes, ShapeError> {
-    let symbolic = Symbolic::of(system)?;
+    solve_within(MOST_STEPS, system, material, wanted, progress)
+}
+
+/// Solves for the modes of a body whose factors take at most `most_steps` multiplications each.
+///
+/// # Errors
+/// When memory runs out, a factor would take more, more than [`MOST_MODES`] modes are below the frequency
+/// asked for, the body hangs together by points only, or a mode does not reach its accuracy.
+pub(crate) fn solve_within(
+    most_steps: f64,
+    system: &System,
+    material: &Elastic,
+    wanted: &Wanted,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Eigenmodes, ShapeError> {
+    let symbolic = Symbolic::of(system, most_steps)?;
     progress(0.1);
     let below = wanted.up_to_hz.map(|hz| symbolic.modes_below(system, hz)).transpose()?;
     progress(if below.is_some() { 0.3 } else { 0.1 });
@@ -137,7 +153,8 @@ fn lowest(
     let take = wanted.min(ritz.theta.iter().filter(|t| **t > 0.0).count());
     let frequency_hz =
         ritz.theta[..take].iter().map(|theta| (sigma + 1.0 / theta).max(0.0).sqrt() / TAU).collect();
-    Ok(Eigenmodes { frequency_hz, motions: lanczos.motions(&ritz, take), worst_residual: f64::NAN })
+    let motions = lanczos.motions(&ritz, take);
+    Ok(Eigenmodes { frequency_hz, motions, worst_residual: f64::NAN, steps: symbolic.steps })
 }
 
 /// Keeps the wanted modes and makes sure of each.

@@ -17,13 +17,19 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-/// Most numbers of a factor: with all the rest 2 GB. A thin body has fewer for its unknowns than
-/// a chunky one.
-const MOST_NUMBERS: usize = 220_000_000;
+/// Most multiplications of a factor: two of them and the rest are about a minute of one processor,
+/// and [`MOST_DEGREES_OF_FREEDOM`](crate::volume_mesh::MOST_DEGREES_OF_FREEDOM) then have at most
+/// 182 million numbers, 1.5 GB (steps ≥ numbers² / unknowns). A thin body takes fewer for its
+/// unknowns than a chunky one.
+pub const MOST_STEPS: f64 = 2.2e11;
 
 /// The order of elimination and the pattern of the factor; the same for every shift.
 #[derive(Debug)]
-pub struct Symbolic(SymbolicCholesky<u32>);
+pub struct Symbolic {
+    cholesky: SymbolicCholesky<u32>,
+    /// Multiplications of a factor.
+    pub steps: f64,
+}
 
 /// A factor of K − σM for solving.
 #[derive(Debug)]
@@ -41,8 +47,8 @@ impl Symbolic {
     /// dissection, whichever fills less.
     ///
     /// # Errors
-    /// When memory runs out, or the factor would have more than [`MOST_NUMBERS`].
-    pub fn of(system: &System) -> Result<Self, ShapeError> {
+    /// When memory runs out, or a factor would take more than `most_steps`.
+    pub fn of(system: &System, most_steps: f64) -> Result<Self, ShapeError> {
         let (starts, rows, _) = system.shifted(0.0);
         let n = system.unknowns();
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
@@ -65,14 +71,14 @@ impl Symbolic {
         let dissected = with(SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)))?;
         let smaller = dissected.len_val() < minimum_degree.len_val();
         let symbolic = if smaller { dissected } else { minimum_degree };
-        let numbers = symbolic.len_val();
-        if numbers > MOST_NUMBERS {
+        let steps = steps(&symbolic);
+        if steps > most_steps {
             let what = format!(
-                "is too fine for a body as thick as it is: its {n} unknowns make {numbers} numbers of work"
+                "is too fine for a body as thick as it is: its {n} unknowns take {steps:.1e} steps of work"
             );
-            return Err(ShapeError::new("", what, format!("at most {MOST_NUMBERS}: mesh it coarser")));
+            return Err(ShapeError::new("", what, format!("at most {most_steps:.1e}: mesh it coarser")));
         }
-        Ok(Self(symbolic))
+        Ok(Self { cholesky: symbolic, steps })
     }
 
     /// Factors K − σM for a σ below all modes.
@@ -85,10 +91,10 @@ impl Symbolic {
         let n = system.unknowns();
         let matrix =
             SparseColMatRef::new(SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows), &values);
-        let scratch = self.0.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let scratch = self.cholesky.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| out_of_memory())?;
-        let mut factor = vec![0.0; self.0.len_val()];
-        self.0
+        let mut factor = vec![0.0; self.cholesky.len_val()];
+        self.cholesky
             .factorize_numeric_llt(
                 &mut factor,
                 matrix,
@@ -102,7 +108,7 @@ impl Symbolic {
                 let what = "its stiffness is not positive: some tetrahedra are too flat";
                 ShapeError::new("", what, "mesh it anew with better elements")
             })?;
-        Ok(Factor { symbolic: &self.0, values: factor })
+        Ok(Factor { symbolic: &self.cholesky, values: factor })
     }
 
     /// Number of modes, the six rigid ones included, below `frequency_hz`.
@@ -115,10 +121,10 @@ impl Symbolic {
         let n = system.unknowns();
         let matrix =
             SparseColMatRef::new(SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows), &values);
-        let scratch = self.0.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        let scratch = self.cholesky.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| out_of_memory())?;
-        let mut factor = vec![0.0; self.0.len_val()];
-        self.0
+        let mut factor = vec![0.0; self.cholesky.len_val()];
+        self.cholesky
             .factorize_numeric_ldlt(
                 &mut factor,
                 matrix,
@@ -136,7 +142,7 @@ impl Symbolic {
 
     /// The diagonal D of a factor L D Lᵀ.
     fn pivots<'a>(&'a self, factor: &'a [f64]) -> Box<dyn Iterator<Item = f64> + 'a> {
-        match self.0.raw() {
+        match self.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(raw) => {
                 Box::new(raw.col_ptr().iter().take(raw.ncols()).map(|&start| factor[start as usize]))
             }
@@ -151,6 +157,24 @@ impl Symbolic {
                 }))
             }
         }
+    }
+}
+
+/// Multiplications that a factor takes: the squares of its columns' lengths.
+fn steps(symbolic: &SymbolicCholesky<u32>) -> f64 {
+    let square = |length: usize| (length as f64).powi(2);
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(raw) => {
+            raw.col_ptr().windows(2).map(|column| square((column[1] - column[0]) as usize)).sum()
+        }
+        SymbolicCholeskyRaw::Supernodal(raw) => (0..raw.n_supernodes())
+            .map(|s| {
+                let columns = (raw.supernode_end()[s] - raw.supernode_begin()[s]) as usize;
+                let values = raw.col_ptr_for_val();
+                let rows = (values[s + 1] - values[s]) as usize / columns.max(1);
+                (0..columns).map(|j| square(rows - j)).sum::<f64>()
+            })
+            .sum(),
     }
 }
 

@@ -15,7 +15,9 @@ use crate::sampling::{Dice, Samples, sample, wall_thicknesses_m};
 use crate::surface_mesh::SurfaceMesh;
 use crate::triangle_tree::TriangleTree;
 use crate::vector::{Vec3, distance, longest_side, mean};
-use crate::volume_mesh::{EDGES, FACES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, sorted, tet_volume_m3};
+use crate::volume_mesh::{
+    EDGES, FACES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, degrees_of_freedom, sorted, tet_volume_m3,
+};
 use rustc_hash::FxHashMap;
 use std::collections::{HashMap, HashSet};
 
@@ -105,6 +107,11 @@ impl Body {
         let mut known = FxHashMap::default();
         let mut kept = self.inside(&delaunay, &mut known);
         for _ in 0..ROUNDS {
+            // Corners and sharp edges alone may be more than the solver takes; rounds only add.
+            let unknowns = degrees_of_freedom(&kept);
+            if unknowns as f64 > (1.0 + LOST) * MOST_DEGREES_OF_FREEDOM as f64 {
+                return Err(self.too_thin(unknowns as f64));
+            }
             let added = self.join_segments(&mut delaunay, &samples, &mut segments, spacing_m)
                 + self.refine(&mut delaunay, &kept, spacing_m);
             if added == 0 {

@@ -6,13 +6,19 @@
 //! (Jacobson, Kavan & Sorkine-Hornung 2013). Far triangles count together as one dipole (Barill et
 //! al. 2018).
 
-use crate::vector::{Vec3, add_scaled, cross, distance, dot, length, mean, sub, unit};
+use crate::vector::{Vec3, add_scaled, cross, distance, dot, length, longest_side, mean, sub, unit};
 
 /// Triangles in a leaf.
 const LEAF: usize = 6;
 /// A box counts as a dipole from this many of its radii on: the error of a number is then below
 /// 0.01.
 const FAR: f64 = 2.5;
+/// Longest edge of a triangle, over the longest side by the root of the number of triangles: those
+/// of an even mesh have at most 3. A longer one is cut, because no box that holds it is ever far
+/// (of a sponge's 12,000 strips each answer took all).
+const LONGEST_EDGE: f64 = 6.0;
+/// Number of pieces that cutting adds at most: 100 MB.
+const MOST_MORE: usize = 1_000_000;
 
 #[derive(Debug)]
 struct Node {
@@ -53,10 +59,11 @@ impl TriangleTree {
     /// Sorts triangles into boxes.
     #[must_use]
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
-        let mut this =
-            Self { triangles: triangles.to_vec(), nodes: Vec::with_capacity(triangles.len() / 2 + 2) };
-        if !triangles.is_empty() {
-            this.build(0, triangles.len());
+        let triangles = cut(triangles);
+        let count = triangles.len();
+        let mut this = Self { triangles, nodes: Vec::with_capacity(count / 2 + 2) };
+        if count > 0 {
+            this.build(0, count);
         }
         this
     }
@@ -175,6 +182,26 @@ impl TriangleTree {
     }
 }
 
+/// Triangles without long ones, which are halved.
+fn cut(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
+    let corners: Vec<Vec3> = triangles.iter().flatten().copied().collect();
+    let longest = LONGEST_EDGE * longest_side(&corners) / (triangles.len() as f64).sqrt();
+    let most = triangles.len() + MOST_MORE;
+    let (mut left, mut pieces) = (triangles.to_vec(), Vec::with_capacity(triangles.len()));
+    while let Some([a, b, c]) = left.pop() {
+        let turned = [[a, b, c], [b, c, a], [c, a, b]];
+        let edge = |[a, b, _]: &[Vec3; 3]| distance(*a, *b);
+        let [a, b, c] = turned.into_iter().max_by(|s, t| edge(s).total_cmp(&edge(t))).unwrap_or([a, b, c]);
+        if distance(a, b) > longest && pieces.len() + left.len() < most {
+            let middle = mean([a, b]);
+            left.extend([[a, middle, c], [middle, b, c]]);
+        } else {
+            pieces.push([a, b, c]);
+        }
+    }
+    pieces
+}
+
 fn box_distance(node: &Node, place: Vec3) -> f64 {
     let outside: Vec3 =
         std::array::from_fn(|c| (node.low[c] - place[c]).max(place[c] - node.high[c]).max(0.0));
@@ -270,5 +297,22 @@ mod tests {
         assert!(near.point.iter().all(|x| (x - 1.0 / 3.0).abs() < 1e-12), "{near:?}");
         let path = tree.free_path([-2.0, 0.1, 0.1], [1.0, 0.0, 0.0], 0.0).unwrap();
         assert!((path - 1.2).abs() < 1e-12);
+    }
+
+    /// Each answer about a sponge of 12,000 strips took all of them, and its filling a minute.
+    #[test]
+    fn long_strips_are_cut_and_triangles_of_an_even_mesh_are_not() {
+        assert_eq!(cut(&octahedron()).len(), 8);
+        let strip = |i: u32| {
+            let y = f64::from(i) / 1000.0;
+            [[0.0, y, 0.0], [1.0, y, 0.0], [1.0, y + 1e-3, 0.0]]
+        };
+        let strips: Vec<_> = (0..1000).map(strip).collect();
+        let pieces = cut(&strips);
+        let area = |all: &[[Vec3; 3]]| all.iter().map(|t| length(area_vector(*t))).sum::<f64>();
+        let longest =
+            |t: &[Vec3; 3]| distance(t[0], t[1]).max(distance(t[1], t[2])).max(distance(t[2], t[0]));
+        assert!(pieces.len() < 30_000 && (area(&pieces) - area(&strips)).abs() < 1e-12, "{}", pieces.len());
+        assert!(pieces.iter().all(|t| longest(t) <= 6.0 / 1000.0_f64.sqrt()));
     }
 }

@@ -87,7 +87,7 @@ impl VolumeMesh {
                 "a body has one: name one with --part, or give each a file of its own",
             );
         }
-        let unknowns = self.degrees_of_freedom();
+        let unknowns = degrees_of_freedom(&self.tets);
         if unknowns > MOST_DEGREES_OF_FREEDOM {
             return refuse(
                 format!("has {unknowns} unknowns"),
@@ -95,18 +95,6 @@ impl VolumeMesh {
             );
         }
         Ok(self)
-    }
-
-    /// Unknown displacements of its quadratic elements: three a corner and three an edge.
-    #[must_use]
-    pub fn degrees_of_freedom(&self) -> usize {
-        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(self.tets.len() * 6);
-        for tet in &self.tets {
-            edges.extend(EDGES.map(|[a, b]| [tet[a].min(tet[b]), tet[a].max(tet[b])]));
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        3 * (self.points.len() + edges.len())
     }
 
     /// Joins points at the same place and drops those no tetrahedron uses.
@@ -225,6 +213,21 @@ impl VolumeMesh {
         });
         (1.0 - volumes[largest] / whole, others)
     }
+}
+
+/// Unknown displacements of quadratic elements: three a corner and three an edge.
+#[must_use]
+pub fn degrees_of_freedom(tets: &[[u32; 4]]) -> usize {
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(tets.len() * 6);
+    for tet in tets {
+        edges.extend(EDGES.map(|[a, b]| [tet[a].min(tet[b]), tet[a].max(tet[b])]));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let mut corners: Vec<u32> = tets.iter().flatten().copied().collect();
+    corners.sort_unstable();
+    corners.dedup();
+    3 * (corners.len() + edges.len())
 }
 
 /// # Errors

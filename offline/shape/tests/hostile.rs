@@ -361,3 +361,57 @@ fn one_part_of_a_file_is_named_or_the_largest() {
     assert!(message.contains("small, large or largest"), "{message}");
     std::fs::remove_file(&path).unwrap();
 }
+
+/// A cube with square channels of a third of it through all three directions, and so on in the
+/// cubes that are left (Menger's sponge), of `3^depth` cells a side.
+fn sponge(depth: u32) -> SurfaceMesh {
+    let cells = 3_u32.pow(depth);
+    let solid = |cell: [u32; 3]| {
+        cell.iter().all(|&c| c < cells)
+            && (0..depth).all(|level| cell.iter().filter(|&&c| c / 3_u32.pow(level) % 3 == 1).count() < 2)
+    };
+    let mut numbers = std::collections::HashMap::new();
+    let mut mesh = SurfaceMesh::default();
+    let mut point = |mesh: &mut SurfaceMesh, at: [u32; 3]| {
+        *numbers.entry(at).or_insert_with(|| {
+            mesh.points.push(at.map(|c| 0.1 * f64::from(c) / f64::from(cells)));
+            mesh.points.len() as u32 - 1
+        })
+    };
+    for i in 0..cells.pow(3) {
+        let cell = [i % cells, i / cells % cells, i / cells / cells];
+        for (axis, back) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+            let mut beside = cell;
+            beside[axis] = if back { cell[axis].wrapping_sub(1) } else { cell[axis] + 1 };
+            if !solid(cell) || solid(beside) {
+                continue;
+            }
+            let corners: [u32; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
+                let mut at = cell;
+                at[axis] += u32::from(!back);
+                at[(axis + 1) % 3] += a;
+                at[(axis + 2) % 3] += b;
+                point(&mut mesh, at)
+            });
+            let [a, b, c, d] = if back { [3, 2, 1, 0].map(|k| corners[k]) } else { corners };
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
+}
+
+/// Took 74 s of one processor to be refused for a surface that was not clean enough.
+#[test]
+fn a_sponge_of_more_corners_than_are_solved_is_refused_for_its_walls() {
+    let ceramic = made(Mesh::Surface(sponge(1)), None).unwrap();
+    assert!((ceramic.volume_m3 / (1e-3 * 20.0 / 27.0) - 1.0).abs() < 1e-3, "{}", ceramic.volume_m3);
+    let error = made(Mesh::Surface(sponge(3)), None).unwrap_err();
+    assert!(error.what.contains("(3.704 mm on a body of 100 mm) are too thin"), "{error}");
+}
+
+/// Two factors of such a block take minutes, and one is held by two gigabytes.
+#[test]
+fn a_solid_that_would_take_minutes_is_refused_for_its_work() {
+    let error = made(Mesh::Volume(common::block([0.1; 3], [17; 3])), None).unwrap_err();
+    assert!(error.what.contains("too fine for a body as thick as it is"), "{error}");
+}

@@ -12,7 +12,7 @@
 
 use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 /// Format of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,8 +88,12 @@ impl WavFile {
                 }
                 _ => {}
             }
-            // Chunks begin at even places.
-            head.reader.seek(SeekFrom::Start(begins + size + size % 2))?;
+            head.reader.seek(SeekFrom::Start(begins + size))?;
+            // Chunks begin at even places; some programs leave the byte out that makes them.
+            let next = head.reader.fill_buf()?.first();
+            if size % 2 == 1 && !next.is_some_and(u8::is_ascii_alphabetic) {
+                head.reader.seek_relative(1)?;
+            }
         }
     }
 
