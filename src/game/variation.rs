@@ -8,9 +8,9 @@
 //!
 //! A shape near a place p is a wave, φ(p + δ) = φ(p) cos kδ + ξ sin kδ, whose k grows with the root
 //! of the frequency as in plates and bars; half a wave of the lowest mode is as long as the body.
-//! Blows on the last two are a tenth harder or softer (contact time · exp(v · [`HARDER`] · ξ)); what
-//! was recorded holds that already. Both numbers are assumed. Bands of noise begin with a seed of
-//! their own each time.
+//! Blows on the last two are a tenth harder or softer (contact time · exp(v · [`HARDER`] · ξ));
+//! what was recorded holds that already. Both numbers are assumed. Bands of noise begin with a seed
+//! of their own each time.
 
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use asperity_dsp::mode::Mode;

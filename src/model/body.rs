@@ -110,13 +110,13 @@ impl Body {
         self
     }
 
-    /// Spread of equal impacts, 0–1, so that a repeated blow is not the same sound again: 0 for none;
-    /// at 1 they differ as real ones do. A body of recorded takes ([`ModalModel::takes`], `asperity
-    /// fit --family`) goes from the one asked for towards another of them, never twice the same; a
-    /// body with shapes is struck about the place asked for, within some hundredths of its size; any
-    /// other has takes of its own, whose modes differ as they do some hundredths of its size away,
-    /// and blows that are a tenth harder or softer.
-    /// Seeded by [`Config::seed`](crate::Config::seed) and the count of impacts on the body.
+    /// Spread of equal impacts, 0–1, so that a repeated blow is not the same sound again: 0 for
+    /// none; at 1 they differ as real ones do. A body of recorded takes ([`ModalModel::takes`],
+    /// `asperity fit --family`) goes from the one asked for towards another of them, never twice
+    /// the same; a body with shapes is struck about the place asked for, within some hundredths of
+    /// its size; any other has takes of its own, whose modes differ as they do some hundredths of
+    /// its size away, and blows that are a tenth harder or softer. Seeded by
+    /// [`Config::seed`](crate::Config::seed) and the count of impacts on the body.
     #[must_use]
     pub fn variation(mut self, variation: f64) -> Self {
         self.variation = variation;

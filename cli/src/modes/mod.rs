@@ -60,7 +60,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if options.json { output::say_json(&report) } else { say(&report, options) }
 }
 
-/// Modes of a mesh of a material, `size_m` long or as long as it is, as `asperity modes` writes them.
+/// Modes of a mesh of a material, `size_m` long or as long as it is, as `asperity modes` writes
+/// them.
 ///
 /// # Errors
 /// When the mesh is no body, or the modes cannot be solved for.

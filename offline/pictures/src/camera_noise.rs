@@ -17,9 +17,10 @@
 //! Uneven light is no noise and no relief: octaves are those of the picture without it, which comes
 //! back where anything is left. They are measured with the picture faded towards its borders
 //! ([`FADE`]): steps from one border to the other one, or what a tiling part makes of them, leak
-//! into the octave of 64–128 texels, and a level spectrum rises there. Where each octave has noise's even spread of power and less than
-//! [`FAINT`], noise that somebody blurred (denoised, reduced, recompressed) and a faint surface are
-//! the same picture, and it is flat; so it is where less than [`NOTHING`] is left of 4–128 texels.
+//! into the octave of 64–128 texels, and a level spectrum rises there. Where each octave has
+//! noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised,
+//! reduced, recompressed) and a faint surface are the same picture, and it is flat; so it is where
+//! less than [`NOTHING`] is left of 4–128 texels.
 //!
 //! Power is subtracted, not filtered by least squares (Wiener), so that what stays has the strength
 //! it had: levels are compared by power. Source: spectral subtraction (S. F. Boll, IEEE ASSP 27,

@@ -57,8 +57,9 @@ pub fn solve(
 /// Solves for the modes of a body whose factors take at most `most_steps` multiplications each.
 ///
 /// # Errors
-/// When memory runs out, a factor would take more, more than [`MOST_MODES`] modes are below the frequency
-/// asked for, the body hangs together by points only, or a mode does not reach its accuracy.
+/// When memory runs out, a factor would take more, more than [`MOST_MODES`] modes are below the
+/// frequency asked for, the body hangs together by points only, or a mode does not reach its
+/// accuracy.
 pub(crate) fn solve_within(
     most_steps: f64,
     system: &System,
