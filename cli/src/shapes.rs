@@ -12,7 +12,7 @@ use std::time::SystemTime;
 /// Steps of the progress bar of one body.
 const STEPS: u64 = 100;
 
-/// What a solution follows from.
+/// Mesh, size and material that a solution follows from.
 #[derive(Clone, PartialEq)]
 struct Asked {
     mesh: PathBuf,

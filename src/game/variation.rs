@@ -38,9 +38,9 @@ pub(crate) struct Variation {
 /// Source of what differs.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
-    /// So many recorded takes, the first included.
+    /// Number of recorded takes, the first included.
     Takes(usize),
-    /// So many positions, each with so many takes that were made of it.
+    /// Number of positions, and of the takes that were made of each.
     Positions(usize, usize),
     /// Places of its surface.
     Shapes,

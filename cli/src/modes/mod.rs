@@ -127,7 +127,7 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
     // What the engine would refuse is no body.
-    asperity::ModalModel::parse(&text).map_err(|error| CliError::from_error(error).within(&name))?;
+    ModalModel::parse(&text).map_err(|error| CliError::from_error(error).within(&name))?;
     let name = beside.file_name().map(|name| name.to_string_lossy().into_owned());
     let written = if let (true, Some(name)) = (options.shapes_beside || options.shapes_glb, name) {
         if let Some(bytes) = file.put_shapes_beside(name) {
