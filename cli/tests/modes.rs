@@ -204,7 +204,7 @@ fn a_scene_whose_body_is_a_mesh_sounds_as_with_its_modes_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("bar.obj"), BAR).unwrap();
-    let blow = r#"{"t":0.0,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.01,"radius_m":0.005,"at_m":[0.1,0.01,0.01]}"#;
+    let blow = r#"{"t":0.0,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.01,"radius_m":0.005,"striker":"steel","at_m":[0.1,0.01,0.01]}"#;
     std::fs::write(at.join("blow.jsonl"), format!("{blow}\n")).unwrap();
     let scene = |name: &str, body: &str| {
         let text = format!(

@@ -3,41 +3,70 @@
 use super::demo_scene::DemoScene;
 use super::scenes::{LEAD_S, strike};
 use super::strokes::log;
+use asperity::Material;
 
-/// Bodies in the order of the knocks: name, stock shape, its size in metres, material.
-const BODIES: [(&str, &str, f64, &str); 4] = [
-    ("door", "door", 2.0, "wood"),
-    ("can", "can", 0.11, "steel"),
-    ("box", "box", 0.4, "cardboard"),
-    ("curtain", "sheet", 0.5, "cloth"),
+/// A thing that is knocked on.
+struct Thing {
+    name: &'static str,
+    stock: &'static str,
+    size_m: f64,
+    material: &'static str,
+    /// Mass that the knock feels, kg: of 60 g behind the knuckle and the thing, or the piece of
+    /// cloth that it moves (assumed).
+    mass_kg: f64,
+    /// Gain that brings the four near each other.
+    strike_gain: f64,
+}
+
+/// Things in the order of the knocks.
+const THINGS: [Thing; 4] = [
+    Thing { name: "door", stock: "door", size_m: 2.0, material: "wood", mass_kg: 0.06, strike_gain: 3.0 },
+    Thing { name: "can", stock: "can", size_m: 0.11, material: "steel", mass_kg: 0.027, strike_gain: 6.0 },
+    Thing { name: "box", stock: "box", size_m: 0.4, material: "cardboard", mass_kg: 0.03, strike_gain: 1.0 },
+    Thing {
+        name: "curtain",
+        stock: "sheet",
+        size_m: 0.5,
+        material: "cloth",
+        mass_kg: 0.0005,
+        strike_gain: 2.0,
+    },
 ];
-/// Knocks on each, and the time from one to the next, s.
-const KNOCKS: (usize, f64) = (3, 0.22);
-/// Mass behind a knuckle and its radius, kg and m (assumed); skin over bone answers like rubber.
-const KNUCKLE: (f64, f64) = (0.06, 0.01);
+/// Number of knocks on each, and the time from one to the next, s.
+const KNOCKS: (usize, f64) = (5, 0.13);
+/// Skin over bone (assumed): Young's modulus in pascals, Poisson's ratio, kg/m³.
+const SKIN_OVER_BONE: (f64, f64, f64) = (1e8, 0.45, 1200.0);
+/// Radius of a knuckle, m (assumed).
+const RADIUS_M: f64 = 0.01;
+const SPEED_M_S: f64 = 0.8;
 
 /// The scene.
 pub fn scene() -> DemoScene {
-    let mut toml = "# A knuckle on four things. Knocks are equal in the log; `variation` lets each sound a little different.\n\
+    let mut toml = "# A knuckle on four things. Knocks are equal in the log; `variation` lets each sound a little different,\n\
+                    # `strike_gain` brings the four near each other.\n\
                     contacts = \"knuckle.jsonl\"\ntail_s = 0.8\n\n"
         .to_owned();
+    let (young_pa, poisson, density_kg_m3) = SKIN_OVER_BONE;
+    let knuckle = Material::new(young_pa, poisson, density_kg_m3);
     let mut lines = Vec::new();
     let mut t = LEAD_S;
-    for (name, stock, size_m, material) in BODIES {
+    for Thing { name, stock, size_m, material, mass_kg, strike_gain } in THINGS {
         toml += &format!(
-            "[[body]]\nname = \"{name}\"\nstock = \"{stock}\"\nsize_m = {size_m:?}\nmaterial = \"{material}\"\nvariation = 0.5\n\n"
+            "[[body]]\nname = \"{name}\"\nstock = \"{stock}\"\nsize_m = {size_m:?}\nmaterial = \"{material}\"\n\
+             strike_gain = {strike_gain:?}\nvariation = 0.5\n\n"
         );
         for _ in 0..KNOCKS.0 {
-            lines.push(strike((t * 1e4f64).round() / 1e4, name, 0.8, "rubber", KNUCKLE));
+            let at = (t * 1e4f64).round() / 1e4;
+            lines.push(strike(at, name, SPEED_M_S, knuckle.into(), (mass_kg, RADIUS_M)));
             t += KNOCKS.1;
         }
-        t += 0.6;
+        t += 0.5;
     }
-    toml += "[audio]\ngain = 0.5\n";
+    toml += "[audio]\ngain = 0.5\nlimit = true\n";
     DemoScene {
         name: "knuckle",
         title: "A knuckle on wood, a can, cardboard and cloth",
-        notice: "Three equal knocks each on a wooden door, a tin can, a cardboard box and a curtain. Door and can ring, the box hardly, \
+        notice: "Five equal knocks each on a wooden door, a tin can, a cardboard box and a curtain. Door and can ring, the box hardly, \
                  the curtain not at all: it is noise that is gone at once. No knock is quite the one before (`variation`).",
         toml,
         log: log(lines),

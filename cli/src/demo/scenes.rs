@@ -138,7 +138,13 @@ pub fn bar_modes() -> ModalModel {
 }
 
 /// An impact on a body by something of a material, with its mass and radius, kg and m.
-pub fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m): (f64, f64)) -> LogLine {
+pub fn strike(
+    t: f64,
+    body: &str,
+    speed_m_s: f64,
+    striker: Striker,
+    (mass_kg, radius_m): (f64, f64),
+) -> LogLine {
     LogLine {
         t,
         event: LogEvent::Impact {
@@ -147,7 +153,7 @@ pub fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radiu
             speed_m_s,
             mass_kg,
             radius_m,
-            striker: Striker::Preset(striker.to_owned()),
+            striker,
             restitution: 0.5,
             position: 0,
             at_m: None,
@@ -165,6 +171,7 @@ fn struck() -> DemoScene {
     for body in ["tile", "bar"] {
         for striker in ["steel", "wood", "rubber"] {
             for speed_m_s in [0.3, 0.6, 1.2] {
+                let striker = Striker::Preset(striker.to_owned());
                 lines.push(strike((t * 1e4f64).round() / 1e4, body, speed_m_s, striker, BALL));
                 t += 0.28;
             }
