@@ -20,16 +20,16 @@ struct Thing {
 
 /// Things in the order of the knocks.
 const THINGS: [Thing; 4] = [
-    Thing { name: "door", stock: "door", size_m: 2.0, material: "wood", mass_kg: 0.06, strike_gain: 3.0 },
-    Thing { name: "can", stock: "can", size_m: 0.11, material: "steel", mass_kg: 0.027, strike_gain: 6.0 },
-    Thing { name: "box", stock: "box", size_m: 0.4, material: "cardboard", mass_kg: 0.03, strike_gain: 1.0 },
+    Thing { name: "door", stock: "door", size_m: 2.0, material: "wood", mass_kg: 0.06, strike_gain: 4.0 },
+    Thing { name: "can", stock: "can", size_m: 0.11, material: "steel", mass_kg: 0.027, strike_gain: 8.0 },
+    Thing { name: "box", stock: "box", size_m: 0.4, material: "cardboard", mass_kg: 0.03, strike_gain: 0.6 },
     Thing {
         name: "curtain",
         stock: "sheet",
         size_m: 0.5,
         material: "cloth",
         mass_kg: 0.0005,
-        strike_gain: 2.0,
+        strike_gain: 1.2,
     },
 ];
 /// Number of knocks on each, and the time from one to the next, s.
@@ -62,7 +62,7 @@ pub fn scene() -> DemoScene {
         }
         t += 0.5;
     }
-    toml += "[audio]\ngain = 0.5\nlimit = true\n";
+    toml += "[audio]\ngain = 0.05\n";
     DemoScene {
         name: "knuckle",
         title: "A knuckle on wood, a can, cardboard and cloth",
