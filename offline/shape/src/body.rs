@@ -4,7 +4,7 @@ use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve_within};
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
 use crate::facets::round_out;
-use crate::factor::{MOST_STEPS, MOST_STEPS_OF_A_VOLUME};
+use crate::factor::MOST_STEPS;
 use crate::filling::Body;
 use crate::mesh::Mesh;
 use crate::repair::Cracks;
@@ -181,7 +181,7 @@ fn from_volume(
     if let Some(surface) = curved {
         round_out(&mut volume, &TriangleTree::new(&surface.all_corners()));
     }
-    let modes = solved(MOST_STEPS_OF_A_VOLUME, &volume, material, &making.wanted, progress)?;
+    let modes = solved(MOST_STEPS, &volume, material, &making.wanted, progress)?;
     if let Some(top) = modes.1.frequency_hz.last() {
         tell_coarse(&volume, material, *top, &mut told);
     }

@@ -22,8 +22,6 @@ use faer::{Conj, MatMut, Par, Side};
 /// 182 million numbers, 1.5 GB (steps ≥ numbers² / unknowns). A thin body takes fewer for its
 /// unknowns than a chunky one.
 pub const MOST_STEPS: f64 = 2.2e11;
-/// The same where tetrahedra are given, whose number nobody else chooses: two minutes and 2 GB.
-pub const MOST_STEPS_OF_A_VOLUME: f64 = 4e11;
 
 /// The order of elimination and the pattern of the factor; the same for every shift.
 #[derive(Debug)]
