@@ -96,7 +96,7 @@ fn props_of_a_game_ring_stuffed_as_their_volume_meshes_do() {
             (outside[0] + across * (inside[0] - outside[0]), outside[1] + across * (inside[1] - outside[1]))
         })
     };
-    for (name, mesh) in [("horn", horn([40, 10, 10])), ("cup", cup([40, 24, 3]))] {
+    for (name, mesh) in [("horn", horn([40, 8, 8])), ("cup", cup([40, 24, 3]))] {
         let surface = common::surface_of(&mesh);
         let (filled, stuffed) = (body(Mesh::Volume(mesh), 12), body(Mesh::Surface(surface), 12));
         let error = worst(&stuffed, &filled.frequency_hz);
