@@ -57,7 +57,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
     let modes = fields.file("modes", folder)?;
-    let (shape, stock) = read_shape(&mut fields, folder)?;
+    let (shape, stock) = read_form(&mut fields, folder)?;
     let body = BodyEntry {
         name,
         modes,
@@ -106,13 +106,11 @@ fn read_sends(fields: &mut Fields) -> Result<Vec<(String, f64)>, FileError> {
     Ok(gains)
 }
 
-type Shape = (PathBuf, Option<f64>);
+/// A mesh and its longest side, and a stock body and its size, of which a body has one or neither.
+type Form = (Option<(PathBuf, Option<f64>)>, Option<(Stock, f64)>);
 
 /// `shape`, which may have a `size_m`, or `stock`, which needs one.
-fn read_shape(
-    fields: &mut Fields,
-    folder: &Path,
-) -> Result<(Option<Shape>, Option<(Stock, f64)>), FileError> {
+fn read_form(fields: &mut Fields, folder: &Path) -> Result<Form, FileError> {
     let mesh = fields.file("shape", folder)?;
     let stock = fields.word("stock", &Stock::ALL)?;
     let size_m = fields.number(&parameters::body::SIZE_M)?;

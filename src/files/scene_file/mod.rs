@@ -235,9 +235,9 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
     }
     let buses: Vec<&str> = scene.audio.iter().filter_map(|bus| bus.name.as_deref()).collect();
     for body in &scene.bodies {
-        let named =
-            body.bus.iter().map(|bus| ("bus", bus)).chain(body.sends.iter().map(|(bus, _)| ("sends", bus)));
-        for (key, bus) in named.filter(|(_, bus)| !buses.contains(&bus.as_str())) {
+        let sends = body.sends.iter().map(|(bus, _)| ("sends", bus));
+        let mut named = body.bus.iter().map(|bus| ("bus", bus)).chain(sends);
+        if let Some((key, bus)) = named.find(|(_, bus)| !buses.contains(&bus.as_str())) {
             let known: Vec<String> = buses.iter().map(|name| format!("\"{name}\"")).collect();
             let right = match known.as_slice() {
                 [] => "name a bus under [[audio]]".to_owned(),
