@@ -44,7 +44,9 @@ pub struct Eigenmodes {
 /// Solves for the modes of a body; `progress` hears the part done, 0 to 1.
 ///
 /// # Errors
-/// Those of [`solve_within`], of the work that a minute allows.
+/// When memory runs out, the work would take more than a minute, more than [`MOST_MODES`] modes are
+/// below the frequency asked for, the body hangs together by points only, or a mode does not reach
+/// its accuracy.
 pub fn solve(
     system: &System,
     material: &Elastic,
