@@ -15,10 +15,10 @@
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
 //! Uneven light is no noise and no relief: octaves are those of the picture without it, which comes
-//! back where anything is left. They are measured with the picture faded towards its borders
-//! ([`FADE`]): steps from one border to the other one, or what a tiling part makes of them, leak
-//! into the octave of 64–128 texels, and a level spectrum rises there. Where each octave has
-//! noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised,
+//! back where anything is left. They are measured with the picture faded towards its borders by a
+//! quarter at either end: steps from one border to the other one, or what a tiling part makes of
+//! them, leak into the octave of 64–128 texels, and a level spectrum rises there. Where each octave
+//! has noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised,
 //! reduced, recompressed) and a faint surface are the same picture, and it is flat; so it is where
 //! less than [`NOTHING`] is left of 4–128 texels.
 //!
