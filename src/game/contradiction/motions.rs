@@ -104,6 +104,11 @@ pub(crate) struct Motions {
 }
 
 impl Motions {
+    /// Drops what was seen on a surface that is gone.
+    pub(crate) fn forget(&mut self, surface: SurfaceId) {
+        self.tallies.remove(&surface);
+    }
+
     /// Notes an accepted event; `sheet` tells the surface's size, and a contact that is silent for
     /// `timeout_s` has ended.
     pub(crate) fn note(

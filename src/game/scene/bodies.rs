@@ -233,6 +233,7 @@ impl Scene {
         self.bodies.remove(body.0);
         self.given.remove(&body);
         self.sounded.remove(&body);
+        self.strongest.blows_n_s.remove(&body);
         self.moved.remove(&body);
         self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
         Ok(())

@@ -142,6 +142,8 @@ impl Scene {
         self.known_surface(id)?;
         self.send(Message::RemoveSurface { slot: id.index() })?;
         self.surfaces.remove(id.0);
+        self.strongest.strokes.remove(&id);
+        self.motions.forget(id);
         self.note(|names| LogEdit::RemoveSurface { surface: names.surface(id) });
         Ok(())
     }
