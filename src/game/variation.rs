@@ -42,15 +42,15 @@ enum Kind {
     Takes(usize),
     /// Number of positions, and of the takes that were made of each.
     Positions(usize, usize),
-    /// Places of its surface.
-    Shapes,
+    /// Places of its surface, so far apart, m.
+    Shapes(f64),
 }
 
 impl Kind {
     fn of(model: &ModalModel) -> Self {
         let positions = model.position_count();
         match (&model.shapes, model.takes) {
-            (Some(_), _) => Self::Shapes,
+            (Some(shapes), _) => Self::Shapes(SPREAD * shapes.size_m()),
             (None, true) => Self::Takes(positions),
             (None, false) => Self::Positions(positions, MADE.min((MAX_POSITIONS - positions) / positions)),
         }
@@ -66,13 +66,13 @@ pub(crate) struct Varied {
     pub(crate) seed: u32,
     /// Factor of the contact time.
     pub(crate) softer: f64,
-    /// Distance from the place asked for, in sizes of the body.
-    pub(crate) aside: [f64; 3],
+    /// Distance from the place asked for, m.
+    pub(crate) aside_m: [f64; 3],
 }
 
 impl Varied {
     /// No difference.
-    pub(crate) const NONE: Self = Self { other: (0, 0.0), seed: 0, softer: 1.0, aside: [0.0; 3] };
+    pub(crate) const NONE: Self = Self { other: (0, 0.0), seed: 0, softer: 1.0, aside_m: [0.0; 3] };
 }
 
 impl Variation {
@@ -94,9 +94,9 @@ impl Variation {
                 let other = take.checked_sub(1).map_or(asked, |take| positions + asked * made + take);
                 Varied { other: (other, by), seed, softer: self.softer(), ..Varied::NONE }
             }
-            Kind::Shapes => {
-                let aside = [(); 3].map(|()| SPREAD * self.amount * self.rng.normal());
-                Varied { aside, seed, softer: self.softer(), ..Varied::NONE }
+            Kind::Shapes(spread_m) => {
+                let aside_m = [(); 3].map(|()| spread_m * self.amount * self.rng.normal());
+                Varied { aside_m, seed, softer: self.softer(), ..Varied::NONE }
             }
         }
     }

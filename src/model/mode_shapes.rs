@@ -43,6 +43,15 @@ pub struct ModeShapes {
 }
 
 impl ModeShapes {
+    /// Longest side of the box about the body, m.
+    pub(crate) fn size_m(&self) -> f64 {
+        let side = |axis: usize| {
+            let along = || self.points_m.iter().map(|point| point[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        (0..3).map(side).fold(0.0, f64::max)
+    }
+
     /// Body `size` times as large: mass-normalised motion falls as its mass grows, and what it
     /// sounds like stays.
     pub(crate) fn scale(&mut self, size: f64) {

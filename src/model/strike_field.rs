@@ -112,11 +112,7 @@ impl StrikeField {
     /// Longest side of the box about the body, m.
     #[must_use]
     pub fn size_m(&self) -> f64 {
-        let side = |axis: usize| {
-            let along = || self.shapes.points_m.iter().map(|point| point[axis]);
-            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-        };
-        (0..3).map(side).fold(0.0, f64::max)
+        self.shapes.size_m()
     }
 
     /// Amplitude of every mode for 1 N·s there, in the unit of the file.

@@ -357,8 +357,7 @@ impl Scene {
         let place = field.and_then(|field| {
             let asked_m =
                 impact.at_m.or_else(|| (*varied != Varied::NONE).then(|| field.struck_point_m()))?;
-            let size_m = field.size_m();
-            let at_m = [0, 1, 2].map(|axis| asked_m[axis] + size_m * varied.aside[axis]);
+            let at_m = [0, 1, 2].map(|axis| asked_m[axis] + varied.aside_m[axis]);
             field.place(at_m, impact.direction)
         });
         let of = StrikePoint::new(place, impact.position);
