@@ -26,6 +26,12 @@ impl Progress {
         Self { what, total, done: 0, started: Instant::now(), bar: None, terminal }
     }
 
+    /// A part of the whole is done, 0 to 1; less than before moves nothing.
+    pub fn reach(&mut self, part: f64) {
+        let step = (part.clamp(0.0, 1.0) * self.total as f64) as u64;
+        self.advance(step.saturating_sub(self.done));
+    }
+
     /// `steps` more are done.
     pub fn advance(&mut self, steps: u64) {
         self.done = self.done.saturating_add(steps).min(self.total);

@@ -50,12 +50,7 @@ fn solved(asked: Asked) -> Result<Arc<ModalModel>, CliError> {
         return Ok(Arc::clone(model));
     }
     let mut progress = Progress::new("solving", STEPS);
-    let mut shown = 0;
-    let model = modes::model(&asked.mesh, &asked.material, asked.size_m, &mut |done| {
-        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
-        progress.advance(step.saturating_sub(shown));
-        shown = shown.max(step);
-    })?;
+    let model = modes::model(&asked.mesh, &asked.material, asked.size_m, &mut |done| progress.reach(done))?;
     let model = Arc::new(model);
     known().push((asked, Arc::clone(&model)));
     Ok(model)

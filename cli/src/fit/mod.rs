@@ -200,13 +200,8 @@ fn channel(text: &str) -> Result<ChannelChoice, CliError> {
 fn fitted(path: &Path, channel: ChannelChoice, options: &Options) -> Result<(Recording, Fit), CliError> {
     let recording = asperity_fit::load(path, channel).map_err(CliError::from_error)?;
     let mut progress = Progress::new("fitting", STEPS);
-    let mut shown = 0;
-    let fit = asperity_fit::fit(&recording, &options.fit_options(), &mut |done| {
-        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
-        progress.advance(step.saturating_sub(shown));
-        shown = shown.max(step);
-    })
-    .map_err(CliError::from_error)?;
+    let fit = asperity_fit::fit(&recording, &options.fit_options(), &mut |done| progress.reach(done))
+        .map_err(CliError::from_error)?;
     Ok((recording, fit))
 }
 

@@ -256,7 +256,6 @@ fn reduced(
     outputs: &mut Outputs,
 ) -> Result<Made, CliError> {
     let mut progress = Progress::new("reducing", STEPS);
-    let mut shown = 0;
     let about = asperity_ports::clip::About {
         editor: format!("asperity {}", env!("CARGO_PKG_VERSION")),
         source: source.to_owned(),
@@ -269,12 +268,8 @@ fn reduced(
         way: None,
         about,
     };
-    let reduction = reduction::reduce(samples, rate_hz, device, &settings, &mut |done| {
-        let step = (done * STEPS as f64) as u64;
-        progress.advance(step.saturating_sub(shown));
-        shown = shown.max(step);
-    })
-    .map_err(|error| CliError::from_error(error.within(source)))?;
+    let reduction = reduction::reduce(samples, rate_hz, device, &settings, &mut |done| progress.reach(done))
+        .map_err(|error| CliError::from_error(error.within(source)))?;
     drop(progress);
     let mut warnings = told;
     let peak = reduction.clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);

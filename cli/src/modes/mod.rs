@@ -49,12 +49,7 @@ pub struct Report {
 /// cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let mut progress = Progress::new("solving", STEPS);
-    let mut shown = 0;
-    let report = make(options, &mut |done| {
-        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
-        progress.advance(step.saturating_sub(shown));
-        shown = shown.max(step);
-    });
+    let report = make(options, &mut |done| progress.reach(done));
     drop(progress);
     let report = report?;
     if options.json { output::say_json(&report) } else { say(&report, options) }
