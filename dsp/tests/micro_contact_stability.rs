@@ -76,6 +76,22 @@ fn every_stiffness_mass_and_rate_stays_bounded_on_a_rough_surface() {
 }
 
 #[test]
+fn a_pad_pressed_far_into_soft_ground_is_not_taken_for_a_lost_one() {
+    for integrator in Integrator::ALL {
+        let probe = Probe { contact_stiffness_n_m: 1e3, ..Probe::default() };
+        let design = MicroContact::new(&probe, integrator, 44_100.0).unwrap();
+        let mut state = design.at_rest(0.0, 20.0);
+        // 60 mm deep at 60 N; what swings beyond the new rest is held too.
+        let forces: Vec<f64> = (0..44_100).map(|n| if n < 100 { 20.0 } else { 60.0 }).collect();
+        let rows = run(&design, &mut state, &[0.0; 44_100], &forces);
+        assert_eq!(state.resets(), 0, "{integrator:?}");
+        let last = rows[44_099];
+        assert!((last.contact_force_n - 60.0).abs() < 0.06, "{integrator:?} {last:?}");
+        assert!((last.pad_m + 0.06).abs() < 6e-5, "{integrator:?} {last:?}");
+    }
+}
+
+#[test]
 fn random_probes_on_random_surfaces_never_gain_energy_from_a_surface_at_rest() {
     let mut rng = Rng::new(2);
     let mut range = |low: f64, high: f64| low * (high / low).powf(rng.uniform());

@@ -198,6 +198,8 @@ mod tests {
         };
         let front = tool.heard(&tip);
         assert_eq!((front.finger_mass_kg, front.pad_stiffness_n_m), (0.03, 6.5e3));
+        assert_eq!((front.pad_mass_kg, front.pad_damping_n_s_m), (5e-4, 15.0));
+        assert_eq!((front.tip_radius_m, front.ridge_m, front.tip), (5e-5, 0.0, None));
         let stiff = Probe { contact_stiffness_n_m: 1e6, ..tool };
         let front = stiff.heard(&tip);
         assert_eq!((front.finger_mass_kg, front.pad_stiffness_n_m), (0.02, 1000.0));

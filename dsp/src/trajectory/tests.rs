@@ -210,6 +210,19 @@ fn old_and_broken_events_change_nothing() {
 }
 
 #[test]
+fn a_contact_that_lands_with_a_broken_report_lies_at_the_origin_without_force() {
+    let design = design(PathMode::Extrapolate);
+    for bad in [
+        event(1000, f64::NAN, Some(0.1)),
+        event(1000, 0.02, Some(f64::INFINITY)),
+        PathEvent { normal_force_n: f64::NAN, ..event(1000, 0.02, Some(0.1)) },
+    ] {
+        let points = render(&design, &[bad], 1200);
+        assert!(points.iter().all(|point| *point == PathPoint::default()), "{bad:?}");
+    }
+}
+
+#[test]
 fn a_missing_velocity_is_estimated() {
     let points = render(&design(PathMode::Extrapolate), &steady(1, 0.0, 0.0, 0.0, false), 132_500);
     assert!(ripple(&points) < 1e-6, "{}", ripple(&points));
