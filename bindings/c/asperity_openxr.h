@@ -33,7 +33,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
 /* As XR_EXT_haptic_parametric of OpenXR 1.1.60 has them, which older headers lack. */
 #define ASP_XR_TYPE_PARAMETRIC_VIBRATION ((XrStructureType)1000775000)
 #define ASP_XR_MOST_POINTS 500
@@ -48,22 +47,19 @@ extern "C" {
 /* Silence before a waveform, and what waits of it, in samples of the runtime's rate at most. */
 #define ASP_XR_LEAD 160
 #define ASP_XR_WAITING 1024
-
 /* Ways to a controller. */
 enum { ASP_XR_PLAIN = 0, ASP_XR_ENVELOPE = 1, ASP_XR_PCM = 2, ASP_XR_PARAMETRIC = 3 };
-
+/* Position of a frame in its stream. */
 enum { ASP_XR_WHOLE = 0, ASP_XR_FIRST = 1, ASP_XR_INTERMEDIATE = 2, ASP_XR_LAST = 3 };
 
 typedef struct asp_xr_value {
     XrDuration time;
     float value;
 } asp_xr_value;
-
 typedef struct asp_xr_transient {
     XrDuration time;
     float amplitude, frequency;
 } asp_xr_transient;
-
 typedef struct asp_xr_vibration {
     XrStructureType type;
     const void *next;
@@ -76,7 +72,6 @@ typedef struct asp_xr_vibration {
     float min_frequency_hz, max_frequency_hz;
     int32_t stream_frame_type;
 } asp_xr_vibration;
-
 typedef struct asp_xr_levels {
     XrStructureType type;
     const void *next;
@@ -84,7 +79,6 @@ typedef struct asp_xr_levels {
     uint32_t count;
     const float *amplitudes;
 } asp_xr_levels;
-
 typedef struct asp_xr_piece {
     XrStructureType type;
     const void *next;
@@ -97,10 +91,8 @@ typedef struct asp_xr_piece {
 
 /* One controller. Settings may be changed between two ticks; what follows them is the helper's own, to be read. */
 typedef struct asp_xr_hand {
-    /* Sample value that counts as amplitude 1. */
-    double full_scale;
-    /* Amplitude below which nothing is felt. */
-    double floor;
+    /* Sample value that counts as amplitude 1, and amplitude below which nothing is felt. */
+    double full_scale, floor;
     asp_port *port;
     double rate_hz, low_hz, high_hz;
     PFN_xrApplyHapticFeedback apply;
@@ -109,13 +101,11 @@ typedef struct asp_xr_hand {
     XrHapticActionInfo info;
     int way;
     XrDuration first_frame_ns;
-
     /* A waveform on its way to the runtime's rate: a low-pass of four sections, and the samples that wait behind a silence. */
     double to_hz, ratio, phase, before, sections[4][5], state[4][2];
     float samples[ASP_XR_LEAD + ASP_XR_WAITING];
     uint32_t waiting;
     uint64_t quiet, sent;
-
     int streams;
     uint64_t first_tick;
     double began_s;
@@ -162,7 +152,7 @@ static inline int asp_xr_pcm(asp_xr_hand *hand, double from_hz, double to_hz) {
     hand->to_hz = 0.0;
     if (!(to_hz >= 200.0 && to_hz <= 8000.0 && to_hz <= from_hz))
         return 0;
-    /* Butterworth's of the eighth order, from 0.35 of the rate on: what the rate cannot carry is 25 dB down, and soon far more. */
+    /* Butterworth's of the eighth order, from 0.35 of the rate on. */
     double pi = 3.14159265358979323846, w = tan(pi * 0.35 * to_hz / from_hz);
     for (int at = 0; at < 4; at++) {
         double damping = 2.0 * cos(pi * (2 * at + 1) / 16.0), a0 = 1.0 + damping * w + w * w, *c = hand->sections[at];
@@ -294,8 +284,7 @@ static inline XrResult asp_xr_once(asp_xr_hand *hand, const asp_point *points, u
         return was ? hand->stop(hand->session, &hand->info) : XR_SUCCESS;
     }
     hand->streams = 1;
-    if (hand->way == ASP_XR_ENVELOPE) {
-        /* After a hitch only what is new is felt. */
+    if (hand->way == ASP_XR_ENVELOPE) { /* after a hitch only what is new is felt */
         uint32_t newest = (uint32_t)(hand->rate_hz * 0.05) + 1, held = 2 + (uint32_t)(hand->rate_hz * 0.025);
         uint32_t from = count > newest ? count - newest : 0, past = count;
         for (; past < count + held && past < 2 * ASP_XR_AT_ONCE; past++)
@@ -348,16 +337,16 @@ static inline void asp_xr_resample(asp_xr_hand *hand, double x) {
 /* The waveform since the last call; what the runtime has no room for is sent again. */
 static inline XrResult asp_xr_wave(asp_xr_hand *hand, double now_s, uint64_t lost) {
     float read[256];
+    uint64_t counted = 0;
     uint32_t consumed = 0, lead = 0, newest = (uint32_t)(0.05 * hand->to_hz);
-    hand->phase += (double)lost * hand->ratio;
+    hand->lost_before += lost, hand->phase += (double)lost * hand->ratio;
     hand->dropped += (uint64_t)hand->phase, hand->phase -= floor(hand->phase);
     for (uint32_t count; (count = asp_port_pcm(hand->port, read, 256)) > 0;)
         for (uint32_t at = 0; at < count; at++)
             asp_xr_resample(hand, read[at] / hand->full_scale);
     double ahead_s = (double)hand->sent / hand->to_hz - (now_s - hand->began_s);
     /* A stream that the runtime has run dry of begins anew, with what is new. */
-    if (hand->streams && ahead_s < 0.0)
-        hand->streams = 0;
+    hand->streams = hand->streams && ahead_s >= 0.0;
     if (!hand->streams && hand->waiting > newest)
         asp_xr_forget(hand, hand->waiting - newest, &hand->dropped);
     if (hand->streams && ahead_s > 0.15)
@@ -374,7 +363,6 @@ static inline XrResult asp_xr_wave(asp_xr_hand *hand, double now_s, uint64_t los
     piece.append = hand->streams ? XR_TRUE : XR_FALSE, piece.consumed = &consumed;
     hand->streams = 1;
     uint32_t count = hand->waiting;
-    uint64_t counted = 0;
     if (asp_xr_send(hand, &piece, count) == XR_SUCCESS) {
         consumed = consumed < piece.count ? consumed : piece.count;
         hand->sent += consumed, count = consumed > lead ? consumed - lead : 0;
@@ -389,12 +377,9 @@ static inline XrResult asp_xr_tick(asp_xr_hand *hand, double now_s) {
     asp_point points[ASP_XR_AT_ONCE];
     XrResult result = XR_SUCCESS;
     uint64_t lost = asp_port_lost(hand->port) - hand->lost_before;
-    if (hand->way == ASP_XR_PCM && hand->to_hz <= 0.0)
-        return result;
-    hand->lost_before += lost;
     if (hand->way == ASP_XR_PCM)
-        return asp_xr_wave(hand, now_s, lost);
-    hand->dropped += lost;
+        return hand->to_hz > 0.0 ? asp_xr_wave(hand, now_s, lost) : result;
+    hand->lost_before += lost, hand->dropped += lost;
     for (;;) {
         uint32_t count = asp_port_points(hand->port, points, ASP_XR_AT_ONCE);
         if (count == 0)
