@@ -20,6 +20,7 @@ const FROM: Feed = Feed::Haptic(ChannelId(0));
 
 /// A thing to feel: what happens at each tick of 60 Hz.
 type Happens = Box<dyn FnMut(&mut Scene, u32)>;
+type Build<'a> = dyn Fn(&mut Scene) -> Happens + 'a;
 
 fn engine() -> Engine {
     Config { sample_rate_hz: RATE_HZ, ..Config::default() }.build().unwrap()
@@ -70,7 +71,7 @@ fn recording(samples: Vec<f64>, rate_hz: f64) -> impl Fn(&mut Scene) -> Happens 
 }
 
 /// All of the haptic and the audio channel, by a render without a port.
-fn offline(seconds: f64, build: &dyn Fn(&mut Scene) -> Happens) -> [Vec<f32>; 2] {
+fn offline(seconds: f64, build: &Build<'_>) -> [Vec<f32>; 2] {
     let Engine { mut scene, mut renderer, .. } = engine();
     let mut happens = build(&mut scene);
     let mut left = [Vec::new(), Vec::new()];
@@ -174,7 +175,7 @@ fn same_points(name: &str, frames: &[(f64, HeadsetFrame)], reduced: &Clip) {
 }
 
 /// What arrives at the three devices, live; errors of third octaves, largest of motor levels, dB.
-fn arrives(name: &str, seconds: f64, build: &dyn Fn(&mut Scene) -> Happens) -> [f64; 2] {
+fn arrives(name: &str, seconds: f64, build: &Build<'_>) -> [f64; 2] {
     let device = Device::quest();
     let [haptic, audio] = offline(seconds, build);
     let was: Vec<f64> = haptic.iter().map(|x| f64::from(*x)).collect();
@@ -228,7 +229,7 @@ fn arrives(name: &str, seconds: f64, build: &dyn Fn(&mut Scene) -> Happens) -> [
 
 #[test]
 fn five_strokes_arrive_as_the_causal_reduction_has_them() {
-    let scenes: [(&str, Box<dyn Fn(&mut Scene) -> Happens>); 5] = [
+    let scenes: [(&str, Box<Build<'_>>); 5] = [
         ("ceramic", Box::new(stroke(Material::CERAMIC, 0.1, 0.6, 0))),
         ("wood", Box::new(stroke(Material::WOOD, 0.05, 1.0, 0))),
         ("steel, fast", Box::new(stroke(Material::STEEL, 0.25, 2.0, 0))),
