@@ -26,16 +26,29 @@ pub const SHIPPED: [(&str, &str); 2] = [
 ];
 
 /// A profile and what is known about it.
-#[derive(Debug, Clone, PartialEq, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SensorPreset {
     /// Description.
     pub label: String,
     /// Its numbers.
-    #[serde(flatten)]
     pub profile: SensorProfile,
     /// Source of each number, by field.
-    #[serde(default)]
     pub source: BTreeMap<String, String>,
+}
+
+/// A profile as its file holds it.
+#[derive(serde::Deserialize)]
+struct Written {
+    label: String,
+    resonance_hz: f64,
+    quality: f64,
+    band_hz: [f64; 2],
+    noise_m_s2_rthz: f64,
+    clip_m_s2: f64,
+    gain_v_per_m_s2: f64,
+    adc_bits: u32,
+    #[serde(default)]
+    source: BTreeMap<String, String>,
 }
 
 impl SensorPreset {
@@ -63,11 +76,21 @@ impl SensorPreset {
     /// When it is no profile.
     pub fn parse(text: &str, place: &str) -> Result<Self, FileError> {
         let right = "a profile is TOML with label, the seven numbers of a sensor and [source]";
-        let preset: Self =
+        let written: Written =
             toml::from_str(text).map_err(|error| FileError::toml(text, &error, right).within(place))?;
-        let told = |error| FileError::from_error(error).within(place);
-        preset.profile.check().map_err(told)?;
-        Ok(preset)
+        let Written { label, source, resonance_hz, quality, band_hz, noise_m_s2_rthz, .. } = written;
+        let Written { clip_m_s2, gain_v_per_m_s2, adc_bits, .. } = written;
+        let profile = SensorProfile {
+            resonance_hz,
+            quality,
+            band_hz,
+            noise_m_s2_rthz,
+            clip_m_s2,
+            gain_v_per_m_s2,
+            adc_bits,
+        };
+        profile.check().map_err(|error| FileError::from_error(error).within(place))?;
+        Ok(Self { label, profile, source })
     }
 }
 

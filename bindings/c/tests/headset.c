@@ -1,5 +1,5 @@
-/* Live haptics against a runtime that is none: it judges each call by the rules of XR_EXT_haptic_parametric (OpenXR 1.1.60) and of
- * XrHapticVibration, loses its focus and its session, and plays in a time of its own. Nothing here links OpenXR.
+/* Live haptics against a runtime that is none: it judges each call by the rules of XR_EXT_haptic_parametric (OpenXR 1.1.60),
+ * XR_FB_haptic_pcm, XR_FB_haptic_amplitude_envelope and XrHapticVibration, loses its focus and its session, and plays in a time of its own. Nothing here links OpenXR.
  *
  *     headset FRAMES           calls the runtime itself
  *     headset FRAMES LOADER    through OpenXR's loader, a library, and the runtime of XR_RUNTIME_JSON (openxr_runtime.c), with what layers there are
@@ -11,144 +11,20 @@
 #include "common.h"
 #include <asperity_openxr.h>
 
+/* The helper's structs are those of a header that has them. */
+#ifdef XR_EXT_haptic_parametric
+#define SAME(ours, theirs, last, its_last)                                                                                                   \
+    typedef char same_##ours[sizeof(ours) == sizeof(theirs) && offsetof(ours, last) == offsetof(theirs, its_last) ? 1 : -1];
+SAME(asp_xr_vibration, XrHapticParametricVibrationEXT, stream_frame_type, streamFrameType)
+SAME(asp_xr_piece, XrHapticPcmVibrationFB, consumed, samplesConsumed)
+SAME(asp_xr_levels, XrHapticAmplitudeEnvelopeVibrationFB, amplitudes, amplitudes)
+typedef char same_types[ASP_XR_TYPE_PARAMETRIC_VIBRATION == XR_TYPE_HAPTIC_PARAMETRIC_VIBRATION_EXT && ASP_XR_TYPE_PCM_VIBRATION == XR_TYPE_HAPTIC_PCM_VIBRATION_FB && ASP_XR_TYPE_ENVELOPE_VIBRATION == XR_TYPE_HAPTIC_AMPLITUDE_ENVELOPE_VIBRATION_FB ? 1 : -1];
+#endif
+
 #define RATE 48000.0
 #define BLOCK 128
 
-/* The runtime. */
-static struct {
-    int focused, parametric;
-    uint64_t session;
-    XrDuration first_frame_ns;
-    double now_s;
-    int streams;
-    double began_s;
-    XrDuration amplitude_ns, frequency_ns;
-    uint64_t calls, frames, points, firsts, lasts, broken, plain, stops;
-    const char *rule;
-    double played_amplitude, first_call_s;
-} runtime;
-
-static XrResult broken(const char *rule) {
-    runtime.broken++;
-    runtime.rule = rule;
-    return XR_ERROR_VALIDATION_FAILURE;
-}
-
-static int ordered(const asp_xr_value *values, uint32_t count, XrDuration from) {
-    for (uint32_t at = 0; at < count; from = values[at++].time) {
-        if (values[at].time < from || !(values[at].value >= 0.0f && values[at].value <= 1.0f))
-            return 0;
-    }
-    return 1;
-}
-
-static XrResult judge(const asp_xr_vibration *frame) {
-    int type = frame->stream_frame_type, begins = type == ASP_XR_WHOLE || type == ASP_XR_FIRST;
-    uint32_t levels = frame->amplitude_count, tones = frame->frequency_count;
-    float low = frame->min_frequency_hz, high = frame->max_frequency_hz;
-    /* A stream is over 50 ms after its last point. */
-    if (runtime.streams && (runtime.now_s - runtime.began_s) * 1e9 > (double)(runtime.amplitude_ns + ASP_XR_HELD_NS))
-        runtime.streams = 0;
-    if (type < 0 || type > 3)
-        return broken("an unknown kind of frame");
-    if (levels < (begins ? 2u : 1u))
-        return broken("too few amplitude points");
-    if (levels > ASP_XR_MOST_POINTS || tones > ASP_XR_MOST_POINTS || frame->transient_count > ASP_XR_MOST_POINTS)
-        return broken("too many points");
-    if (begins && (frame->amplitudes[0].time != 0 || (tones > 0 && frame->frequencies[0].time != 0)))
-        return broken("the first point is not at 0");
-    if (!begins && !runtime.streams)
-        return broken("no stream is running");
-    if (type == ASP_XR_FIRST && frame->amplitudes[levels - 1].time < runtime.first_frame_ns)
-        return broken("the first frame is too short");
-    if (!ordered(frame->amplitudes, levels, begins ? 0 : runtime.amplitude_ns) ||
-        !ordered(frame->frequencies, tones, begins ? 0 : runtime.frequency_ns))
-        return broken("times fall, or a value is outside 0 to 1");
-    if (!begins && (low != 0.0f || high != 0.0f))
-        return broken("a later frame says its frequencies");
-    if ((low == 0.0f) != (high == 0.0f) || (low != 0.0f && (low < 1.0f || high > 1000.0f || high < low)))
-        return broken("frequencies outside 1 to 1000 Hz");
-    runtime.amplitude_ns = frame->amplitudes[levels - 1].time;
-    runtime.frequency_ns = tones > 0 ? frame->frequencies[tones - 1].time : begins ? 0 : runtime.frequency_ns;
-    if ((type == ASP_XR_WHOLE || type == ASP_XR_LAST) && runtime.frequency_ns > runtime.amplitude_ns)
-        return broken("a frequency behind the last amplitude");
-    if (begins)
-        runtime.began_s = runtime.now_s, runtime.firsts++;
-    runtime.lasts += type == ASP_XR_LAST;
-    runtime.streams = type == ASP_XR_FIRST || type == ASP_XR_INTERMEDIATE;
-    runtime.frames++, runtime.points += levels;
-    for (uint32_t at = 0; at < levels; at++)
-        runtime.played_amplitude = fmax(runtime.played_amplitude, frame->amplitudes[at].value);
-    return XR_SUCCESS;
-}
-
-/* The judge itself: what the extension's conformance tests refuse. */
-static void judges(void) {
-    asp_xr_value two[2] = {{0, 0.5f}, {60000000, 0.5f}}, wild[2] = {{0, 0.5f}, {60000000, 1.1f}}, back[2] = {{0, 0.5f}, {10000000, 0.5f}};
-    asp_xr_vibration frame;
-    memset(&runtime, 0, sizeof runtime), memset(&frame, 0, sizeof frame);
-    runtime.first_frame_ns = 50000000;
-    frame.type = ASP_XR_TYPE_PARAMETRIC_VIBRATION, frame.amplitudes = two;
-    frame.amplitude_count = 2, frame.stream_frame_type = ASP_XR_INTERMEDIATE;
-    MUST(judge(&frame) < 0); /* no stream */
-    frame.stream_frame_type = ASP_XR_FIRST, frame.amplitude_count = 1;
-    MUST(judge(&frame) < 0);
-    frame.amplitude_count = 2, frame.amplitudes = wild;
-    MUST(judge(&frame) < 0);
-    frame.amplitudes = back;
-    MUST(judge(&frame) < 0); /* too short */
-    frame.amplitudes = two, frame.min_frequency_hz = 55.0f;
-    MUST(judge(&frame) < 0); /* one frequency alone */
-    frame.max_frequency_hz = 200.0f;
-    MUST(judge(&frame) == XR_SUCCESS);
-    frame.stream_frame_type = ASP_XR_INTERMEDIATE, two[0].time = 60000000, two[1].time = 70000000;
-    MUST(judge(&frame) < 0); /* frequencies again */
-    frame.min_frequency_hz = frame.max_frequency_hz = 0.0f, frame.amplitudes = back;
-    MUST(judge(&frame) < 0); /* times fall */
-    frame.amplitudes = two;
-    MUST(judge(&frame) == XR_SUCCESS);
-    runtime.now_s = 1.0;
-    MUST(judge(&frame) < 0); /* the stream ran dry */
-}
-
-XrResult XRAPI_CALL judged_apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic);
-XrResult XRAPI_CALL judged_stop(XrSession session, const XrHapticActionInfo *info);
-uint64_t judged_session(void);
-
-XrResult XRAPI_CALL judged_apply(XrSession session, const XrHapticActionInfo *info, const XrHapticBaseHeader *haptic) {
-    runtime.calls++;
-    if (session != (XrSession)(uintptr_t)runtime.session)
-        return XR_ERROR_SESSION_LOST;
-    if (info->type != XR_TYPE_HAPTIC_ACTION_INFO || info->action != (XrAction)(uintptr_t)7)
-        return broken("another action");
-    if (!runtime.focused) {
-        runtime.streams = 0;
-        return XR_SESSION_NOT_FOCUSED;
-    }
-    if (runtime.first_call_s < 0.0)
-        runtime.first_call_s = runtime.now_s;
-    if (haptic->type == ASP_XR_TYPE_PARAMETRIC_VIBRATION && runtime.parametric)
-        return judge((const asp_xr_vibration *)haptic);
-    const XrHapticVibration *plain = (const XrHapticVibration *)haptic;
-    runtime.plain++;
-    if (haptic->type != XR_TYPE_HAPTIC_VIBRATION || plain->duration <= 0 || !(plain->amplitude >= 0.0f && plain->amplitude <= 1.0f) ||
-        !(plain->frequency >= 0.0f))
-        return broken("a plain vibration out of range");
-    return XR_SUCCESS;
-}
-
-XrResult XRAPI_CALL judged_stop(XrSession session, const XrHapticActionInfo *info) {
-    (void)session, (void)info;
-    runtime.streams = 0, runtime.stops++;
-    return XR_SUCCESS;
-}
-
-/* Every session has another name; what is said to an older one is refused. */
-uint64_t judged_session(void) {
-    static uint64_t sessions;
-    runtime.streams = 0;
-    return runtime.session = ++sessions;
-}
+#include "headset_judge.h"
 
 /* Ways to it: its own functions, or those that the loader gives. */
 static PFN_xrApplyHapticFeedback apply = judged_apply;
@@ -167,18 +43,24 @@ static PFN_xrVoidFunction found(PFN_xrGetInstanceProcAddr find, const char *name
 }
 
 static void through(const char *loader) {
-    static const char *extensions[] = {"XR_MND_headless"};
+    const char *extensions[] = {"XR_MND_headless", asp_xr_name(ASP_XR_ENVELOPE), asp_xr_name(ASP_XR_PCM), asp_xr_name(ASP_XR_PARAMETRIC)};
+    static XrExtensionProperties offered[8];
+    uint32_t count = 0;
     void *library = dlopen(loader, RTLD_NOW);
     PFN_xrGetInstanceProcAddr find;
     MUST(library != NULL);
     *(void **)&find = dlsym(library, "xrGetInstanceProcAddr");
     MUST(find != NULL);
+    for (int at = 0; at < 8; at++)
+        offered[at].type = XR_TYPE_EXTENSION_PROPERTIES;
+    MUST(((PFN_xrEnumerateInstanceExtensionProperties)found(find, "xrEnumerateInstanceExtensionProperties"))(NULL, 8, &count, offered) == XR_SUCCESS);
+    MUST(asp_xr_best(offered, count) == ASP_XR_PARAMETRIC);
     XrInstanceCreateInfo wanted;
     memset(&wanted, 0, sizeof wanted);
     wanted.type = XR_TYPE_INSTANCE_CREATE_INFO;
     strcpy(wanted.applicationInfo.applicationName, "headset"), strcpy(wanted.applicationInfo.engineName, "asperity");
     wanted.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 20);
-    wanted.enabledExtensionCount = 1, wanted.enabledExtensionNames = extensions;
+    wanted.enabledExtensionCount = 4, wanted.enabledExtensionNames = extensions;
     MUST(((PFN_xrCreateInstance)found(find, "xrCreateInstance"))(&wanted, &instance) == XR_SUCCESS);
     XrActionSet set;
     XrActionSetCreateInfo hands;
@@ -214,7 +96,7 @@ static asp_port *port;
 static uint64_t bell, plate;
 static double time_s;
 
-static void build(double points_hz, asp_port_config *settings) {
+static void build(double points_hz, int way, asp_port_config *settings) {
     asp_config config;
     asp_config_init(&config);
     config.sample_rate_hz = RATE, config.clock = ASP_CLOCK_EXACT;
@@ -228,7 +110,7 @@ static void build(double points_hz, asp_port_config *settings) {
     surface.table = "solid = \"granite\"\nwidth_m = 0.2\nheight_m = 0.2\nrelief_m = 2e-4\n";
     MUST(asp_add_surface(scene, &surface, &plate) == ASP_OK);
     asp_port_config_init(settings);
-    settings->kind = ASP_PORT_POINTS, settings->rate_hz = points_hz, settings->holds_s = 1.0;
+    settings->kind = way == ASP_XR_PCM ? ASP_PORT_PCM : ASP_PORT_POINTS, settings->rate_hz = points_hz, settings->holds_s = 1.0;
     MUST(asp_open_port(scene, settings, &port) == ASP_OK);
     time_s = 0.0;
 }
@@ -248,32 +130,45 @@ static void report(uint32_t kind, double speed_m_s) {
     MUST(asp_report(scene, time_s, &event, 1, sizeof event, NULL) == ASP_OK);
 }
 
+static float frame[2 * BLOCK];
+
 static void render(void) {
-    static float frame[2 * BLOCK];
-    int32_t map[2] = {0, 1};
+    int32_t map[2] = {0, ASP_HAPTIC};
     asp_render_interleaved(renderer, frame, 2, BLOCK, map);
     time_s += BLOCK / RATE;
 }
 
-static void begin(double first_frame_s, int parametric) {
+static void begin(double first_frame_s, int way) {
     memset(&runtime, 0, sizeof runtime);
-    runtime.focused = 1, runtime.parametric = parametric;
+    runtime.focused = 1, runtime.way = way, runtime.room = 4000.0;
     runtime.first_frame_ns = (XrDuration)(first_frame_s * 1e9), runtime.first_call_s = -1.0;
 }
 
 static double now(double drift) { return 40.0 + time_s * (1.0 + drift); }
 
+/* A hand whose controller is reached one way. */
+static void held(asp_xr_hand *hand, const asp_port_config *settings, double full_scale) {
+    asp_xr_init(hand, port, settings, apply, stop);
+    asp_xr_session(hand, opened(), action, 1);
+    if (runtime.way == ASP_XR_PARAMETRIC)
+        asp_xr_parametric(hand, runtime.first_frame_ns);
+    if (runtime.way == ASP_XR_ENVELOPE)
+        asp_xr_envelope(hand);
+    if (runtime.way == ASP_XR_PCM) {
+        MUST(!asp_xr_pcm(hand, RATE, 0.0) && asp_xr_tick(hand, now(0.0)) == XR_SUCCESS && hand->calls == 0);
+        MUST(asp_xr_pcm(hand, RATE, PCM_HZ));
+    }
+    hand->full_scale = full_scale;
+}
+
 /* Strokes that come and go, in a clock that drifts, with hitches of the game, focus lost and a new session. */
-static void frames(uint64_t wanted, double first_frame_s, double drift, int parametric) {
+static void frames(uint64_t wanted, double first_frame_s, double drift, int way) {
     asp_port_config settings;
     asp_xr_hand hand;
-    build(100.0, &settings);
-    begin(first_frame_s, parametric);
-    asp_xr_init(&hand, port, &settings, apply, stop);
-    asp_xr_session(&hand, opened(), action, 1);
-    if (parametric)
-        asp_xr_parametric(&hand, runtime.first_frame_ns);
-    hand.full_scale = 0.05;
+    int parametric = way == ASP_XR_PARAMETRIC;
+    build(100.0, way, &settings);
+    begin(first_frame_s, way);
+    held(&hand, &settings, 0.05);
     uint64_t unread = 0;
     for (uint64_t block = 0; runtime.frames + runtime.plain < wanted; block++) {
         int touches = block % 2000 < 1700;
@@ -298,6 +193,8 @@ static void frames(uint64_t wanted, double first_frame_s, double drift, int para
         }
         if (block % 9000 == 8050)
             asp_xr_session(&hand, opened(), action, 1);
+        /* Little room for a while: what was not taken comes again. */
+        runtime.room = block % 3000 < 300 ? 30.0 : 4000.0;
         asp_xr_tick(&hand, now(drift));
         if (runtime.broken) {
             fprintf(stderr, "frame %llu: %s\n", (unsigned long long)runtime.frames, runtime.rule);
@@ -308,15 +205,15 @@ static void frames(uint64_t wanted, double first_frame_s, double drift, int para
     asp_stats stats;
     asp_init_stats(&stats, sizeof stats);
     MUST(asp_get_stats(scene, &stats) == ASP_OK);
-    uint64_t made = (uint64_t)((double)stats.position / RATE * settings.rate_hz);
-    uint64_t told = hand.played + hand.silent + hand.unfocused + hand.refused + hand.dropped;
+    uint64_t made = (uint64_t)((double)stats.position / RATE * (way == ASP_XR_PCM ? PCM_HZ : settings.rate_hz));
+    uint64_t told = hand.played + hand.silent + hand.unfocused + hand.refused + hand.dropped + hand.waiting;
     MUST(told <= made + 1 && told + 2 >= made);
-    MUST(!parametric || runtime.played_amplitude > 0.1);
+    MUST(way == ASP_XR_PLAIN || way == ASP_XR_PCM || runtime.played_amplitude > 0.1);
     /* Nothing stands between the call and the runtime. */
     MUST(hand.calls == runtime.calls && hand.calls > 0);
-    MUST(wanted < 5000 || (hand.silent > 0 && (!parametric || (runtime.lasts > 0 && hand.dropped > 0)) && hand.unfocused > 0 && hand.refused > 0));
-    printf("%llu frames, %llu points, %llu streams: none refused by a rule; %llu points without focus, %llu without a session, %llu dropped\n",
-           (unsigned long long)(runtime.frames + runtime.plain), (unsigned long long)hand.played, (unsigned long long)runtime.firsts,
+    MUST(time_s < 30.0 || (hand.silent > 0 && (!parametric || (runtime.lasts > 0 && hand.dropped > 0)) && hand.unfocused > 0 && hand.refused > 0));
+    printf("%s: %llu frames, %llu points, %llu streams: none refused by a rule; %llu points without focus, %llu without a session, %llu dropped\n",
+           way ? asp_xr_name(way) : "plain", (unsigned long long)(runtime.frames + runtime.plain), (unsigned long long)hand.played, (unsigned long long)runtime.firsts,
            (unsigned long long)hand.unfocused, (unsigned long long)hand.refused, (unsigned long long)hand.dropped);
     away();
 }
@@ -327,17 +224,13 @@ static int rising(const void *a, const void *b) {
 }
 
 /* From a report to the call that carries it, in the time of the audio: a game of 60 ticks a second that calls asp_xr_tick each block. */
-static void latency(int parametric) {
+static void latency(int way) {
     static double waits_s[200];
     asp_port_config settings;
     asp_xr_hand hand;
-    build(200.0, &settings);
-    begin(0.05, parametric);
-    asp_xr_init(&hand, port, &settings, apply, stop);
-    asp_xr_session(&hand, opened(), action, 1);
-    if (parametric)
-        asp_xr_parametric(&hand, runtime.first_frame_ns);
-    hand.full_scale = 1e-2;
+    build(200.0, way, &settings);
+    begin(0.05, way);
+    held(&hand, &settings, 1e-2);
     for (int strike = 0; strike < 200; strike++) {
         /* Until all is silent, then a little more, so that strikes fall anywhere between two points. */
         for (int block = 0; block < 400 + strike % 7; block++) {
@@ -355,25 +248,77 @@ static void latency(int parametric) {
         waits_s[strike] = runtime.first_call_s - reported_s;
     }
     qsort(waits_s, 200, sizeof *waits_s, rising);
-    printf("%s: from a report to its call %.1f ms at the median, %.1f ms at p99\n", parametric ? "parametric" : "plain",
+    printf("%s: from a report to its call %.1f ms at the median, %.1f ms at p99\n", way ? asp_xr_name(way) : "plain",
            1e3 * waits_s[100], 1e3 * waits_s[198]);
     MUST(waits_s[198] <= 0.02);
     MUST(asp_xr_stop(&hand) == XR_SUCCESS);
     away();
 }
 
+/* Power within a band of 2 s, Hz. */
+static double power(const float *samples, double rate_hz, double low_hz, double high_hz) {
+    double sum = 0.0;
+    int count = (int)(2.0 * rate_hz);
+    for (int bin = (int)ceil(2.0 * low_hz); bin < 2.0 * high_hz; bin++) {
+        double turn = 2.0 * acos(-1.0) * bin / count, re = 0.0, im = 0.0;
+        for (int at = 0; at < count; at++)
+            re += samples[at] * cos(turn * at), im += samples[at] * sin(turn * at);
+        sum += (re * re + im * im) / ((double)count * count);
+    }
+    return sum;
+}
+
+/* A stroke of 2 s as it leaves the engine, and as a runtime has it. */
+static void same_wave(void) {
+    static float left[144000];
+    asp_port_config settings;
+    asp_xr_hand hand;
+    build(100.0, ASP_XR_PCM, &settings);
+    begin(0.0, ASP_XR_PCM);
+    held(&hand, &settings, 0.6);
+    uint32_t count = 0;
+    for (uint64_t block = 0; block < 750; block++) {
+        if (block % 6 == 0)
+            report(block == 0 ? ASP_BEGIN : ASP_MOVE, 0.12);
+        render(), runtime.now_s = now(0.0);
+        for (int at = 0; at < BLOCK; at++)
+            left[count++] = frame[2 * at + 1] / 0.6f;
+        /* A game of 94 frames a second. */
+        if (block % 4 == 3)
+            asp_xr_tick(&hand, now(0.0));
+    }
+    MUST(runtime.broken == 0 && runtime.begun == 1 && runtime.taken >= 4000);
+    double worst_db = 0.0;
+    for (double hz = 63.0; hz < 520.0; hz *= cbrt(2.0)) {
+        double edge = pow(2.0, 1.0 / 6.0), was = power(left, RATE, hz / edge, hz * edge), is = power(runtime.wave, PCM_HZ, hz / edge, hz * edge);
+        worst_db = fmax(worst_db, fabs(10.0 * log10(is / was)));
+    }
+    printf("a waveform at %.0f Hz: third octaves from 63 to 500 Hz within %.2f dB of what left\n", PCM_HZ, worst_db);
+    MUST(worst_db <= 1.0);
+    away();
+}
+
+static void chooses(void) {
+    static XrExtensionProperties offered[3];
+    for (int way = ASP_XR_ENVELOPE; way <= ASP_XR_PARAMETRIC; way++) {
+        MUST(asp_xr_best(offered, 3) == way - 1);
+        strcpy(offered[way - 1].extensionName, asp_xr_name(way));
+    }
+    MUST(asp_xr_best(offered, 3) == ASP_XR_PARAMETRIC && asp_xr_name(ASP_XR_PLAIN) == NULL);
+}
+
 int main(int count, char **words) {
     uint64_t wanted = count > 1 ? strtoull(words[1], NULL, 10) : 100000;
-    int parametric = count < 4;
-    judges();
+    int newest = count < 4 ? ASP_XR_PARAMETRIC : ASP_XR_PLAIN;
+    judges(), chooses();
     if (count > 2)
         through(words[2]);
-    frames(wanted, 0.05, 0.0, parametric);
-    frames(wanted / 20, 0.0, 3e-4, parametric);
-    frames(wanted / 20, 0.12, -3e-4, 0);
-    if (parametric)
-        frames(wanted / 20, 0.12, -3e-4, 1), latency(1);
-    latency(0);
+    frames(wanted, 0.05, 0.0, newest);
+    frames(wanted / 20, 0.0, 3e-4, newest);
+    for (int way = ASP_XR_PLAIN; way <= newest; way++)
+        frames(way == ASP_XR_PCM ? 2 * wanted : wanted / 20, 0.12, -3e-4, way), latency(way);
+    if (newest > ASP_XR_PLAIN)
+        same_wave();
     puts("headset: every call keeps the rules");
     return 0;
 }

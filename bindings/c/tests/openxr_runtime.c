@@ -25,10 +25,10 @@ typedef struct {
 } Runtime;
 
 static XrResult XRAPI_CALL extensions(const char *layer, uint32_t room, uint32_t *count, XrExtensionProperties *told) {
-    static const char *names[] = {"XR_MND_headless", "XR_EXT_debug_utils"};
+    static const char *names[] = {"XR_MND_headless", "XR_EXT_debug_utils", "XR_FB_haptic_amplitude_envelope", "XR_FB_haptic_pcm", "XR_EXT_haptic_parametric"};
     (void)layer;
-    *count = 2;
-    for (uint32_t at = 0; at < 2 && room > 0; at++) {
+    *count = 5;
+    for (uint32_t at = 0; at < 5 && room > 0; at++) {
         strcpy(told[at].extensionName, names[at]);
         told[at].extensionVersion = 1;
     }

@@ -15,7 +15,7 @@
 //! | [`ahap`] | AHAP of Core Haptics |
 //! | [`hjif`], [`keyframes`] | `.hjif` of ISO/IEC 23090-31: one curve that keeps the waveform |
 //! | [`android`] | waveform and envelopes of Android's vibrator |
-//! | [`xr`] | parametric frames, amplitude envelopes and PCM pieces of OpenXR |
+//! | [`xr`] | parametric frames of OpenXR |
 //! | [`dualsense`] | four channels by cable, packets by air |
 //! | [`rumble`] | two motor levels |
 //! | [`resample`] | another rate, not a sample late |

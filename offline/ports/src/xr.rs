@@ -1,11 +1,10 @@
-//! OpenXR: parametric frames (`XR_EXT_haptic_parametric`), amplitude envelopes
-//! (`XR_FB_haptic_amplitude_envelope`) and pieces of PCM (`XR_FB_haptic_pcm`).
+//! OpenXR: a clip as parametric frames (`XR_EXT_haptic_parametric`).
 //!
-//! | extension | rule kept |
-//! |---|---|
-//! | parametric | times in ns since the stream began, which do not fall from frame to frame, strokes later than the one before; at most [`MOST_POINTS`] of each a call, two amplitudes in the first frame and one in any other; the first points at 0, the first frame at least as long as the runtime says; no frequency or stroke behind the last amplitude; 1–1000 Hz, said by the first frame alone; 0–1 |
-//! | amplitude envelope | at most [`MOST_AMPLITUDES`] values 0–1, evenly over the duration |
-//! | PCM | at most [`PCM_STORE`] samples wait in the runtime; what it has not consumed is sent again; every call appends |
+//! Rules kept: times in ns since the stream began, which do not fall from frame to frame, strokes
+//! later than the one before; at most [`MOST_POINTS`] of each a call, two amplitudes in the first
+//! frame and one in any other; the first points at 0, the first frame at least as long as the
+//! runtime says; no frequency or stroke behind the last amplitude; 1–1000 Hz, said by the first
+//! frame alone; 0–1. Amplitude envelopes and pieces of PCM are sent by `asperity_openxr.h`, live.
 //!
 //! [`broken_rule`] is the list of refusals of the specification (OpenXR 1.1.60 and its conformance
 //! tests), written apart from the writer.
@@ -16,12 +15,6 @@ use crate::error::{PortError, within};
 
 /// Most points of an envelope in one call.
 pub const MOST_POINTS: usize = 500;
-/// Most values of an amplitude envelope.
-pub const MOST_AMPLITUDES: usize = 4000;
-/// Samples that the runtime stores.
-pub const PCM_STORE: usize = 4000;
-/// Time that a frame's last values are held, s: the next frame has to come within it.
-pub const HELD_S: f64 = 0.05;
 
 /// A point: ns since the stream's beginning, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,54 +227,4 @@ fn broken_by(frame: &Frame, first_frame_s: f64, runs: bool, ends: &mut [i64; 3])
     ];
     *ends = now;
     checks.into_iter().find(|(broken, _)| *broken).map(|(_, rule)| rule)
-}
-
-/// A clip's levels alone: values evenly over its duration, as many as fit.
-///
-/// # Errors
-/// When the clip breaks a rule.
-pub fn amplitude_envelope(clip: &Clip, per_s: f64) -> Result<Vec<f32>, PortError> {
-    let clip = clip.clone().checked()?;
-    within("per_s", per_s, [1.0, 4000.0])?;
-    let count = ((clip.duration_s() * per_s).ceil() as usize).clamp(1, MOST_AMPLITUDES);
-    Ok(clip.sampled(count as f64 / clip.duration_s()).map(|(level, _)| level as f32).take(count).collect())
-}
-
-/// Feeds PCM to a runtime that consumes as much of every call as it has room for.
-#[derive(Debug, Clone)]
-pub struct PcmFeed<'a> {
-    samples: &'a [f32],
-    sent: usize,
-    piece: usize,
-}
-
-impl<'a> PcmFeed<'a> {
-    /// Pieces of `ahead_s` at the rate that the runtime says; the rate is 0 until a controller is
-    /// held, and is asked for again.
-    ///
-    /// # Errors
-    /// When the rate is not one yet.
-    pub fn new(samples: &'a [f32], rate_hz: f64, ahead_s: f64) -> Result<Self, PortError> {
-        within("rate", rate_hz, [1.0, 192_000.0])?;
-        within("ahead_s", ahead_s, [1e-3, 2.0])?;
-        let piece = ((rate_hz * ahead_s) as usize).clamp(1, PCM_STORE);
-        Ok(Self { samples, sent: 0, piece })
-    }
-
-    /// Frame that the next call hands over; it appends to what waits.
-    #[must_use]
-    pub fn next_piece(&self) -> &'a [f32] {
-        &self.samples[self.sent..(self.sent + self.piece).min(self.samples.len())]
-    }
-
-    /// Number of samples that the runtime has taken; the rest is sent again.
-    pub fn consumed(&mut self, count: usize) {
-        self.sent = (self.sent + count.min(self.piece)).min(self.samples.len());
-    }
-
-    /// Tests whether everything has been taken.
-    #[must_use]
-    pub fn is_done(&self) -> bool {
-        self.sent == self.samples.len()
-    }
 }

@@ -1,5 +1,6 @@
 //! The tests of haptic files in one program, but for the one that asks the formats' own decoders.
 
 mod ahap_rules;
+mod arrives;
 mod formats;
 mod reduction;

@@ -7,7 +7,7 @@ use asperity_ports::{Clip, Device, felt, oscillator, resample, score::Reference}
 use std::f64::consts::TAU;
 use std::path::Path;
 
-fn wav(path: &Path) -> (Vec<f64>, f64) {
+pub fn wav(path: &Path) -> (Vec<f64>, f64) {
     let mut reader = hound::WavReader::open(path).unwrap();
     let spec = reader.spec();
     let full = 2f64.powi(i32::from(spec.bits_per_sample) - 1);
