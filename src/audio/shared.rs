@@ -42,8 +42,8 @@ impl Shared {
         added.unwrap_or(&self.own_probe)
     }
 
-    /// Factor by which the micro-relief widens a sample's way, or narrows it, so that it is the same
-    /// relief at every rate.
+    /// Factor of a sample's way by which the micro-relief widens or narrows it, so that it is the
+    /// same relief at every rate.
     pub(crate) fn noise_footprints(&self) -> f64 {
         self.sample_rate_hz / OVERLAY_RATE_HZ
     }

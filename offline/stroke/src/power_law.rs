@@ -3,9 +3,9 @@
 //! ```text
 //! S(q) = a² c q^−α, flat beyond the outer scale; under a tip the engine's own octaves
 //! ```
-//! Gauss–Newton over exponent, level and outer scale. Under a tip a law without an outer scale would
-//! put the flat long waves down to the exponent; bare ground may have none, so there the scale,
-//! sharp or gradual, has to earn its place.
+//! Gauss–Newton over exponent, level and outer scale. Under a tip a law without an outer scale
+//! would put the flat long waves down to the exponent; bare ground may have none, so there the
+//! scale, sharp or gradual, has to earn its place.
 
 use crate::db;
 use crate::octave_noise::{octave_shape, wavelength_m};
