@@ -9,7 +9,7 @@ use asperity::{ActuatorSettings, Config, Excitation, ModalModel, Mode, Probe, Su
 use common::{SIDE_M, grating, plate, rms, stroke};
 use std::collections::HashMap;
 
-const RATES_HZ: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
+const RATES_HZ: [f64; 7] = [16_000.0, 22_050.0, 32_000.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
 const SEEDS: u64 = 16;
 /// The octave at 1 mm at R = 1, as shipped.
 const MICRO_RELIEF_M: f64 = 22e-6;

@@ -42,10 +42,10 @@ impl Shared {
         added.unwrap_or(&self.own_probe)
     }
 
-    /// Factor of a sample's way by which the micro-relief widens it, so that it is the same relief
-    /// at every rate.
+    /// Factor of a sample's way by which the micro-relief widens or narrows it, so that it is the
+    /// same relief at every rate.
     pub(crate) fn noise_footprints(&self) -> f64 {
-        (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0)
+        self.sample_rate_hz / OVERLAY_RATE_HZ
     }
 
     /// Time in which a contact fades.

@@ -154,7 +154,7 @@ impl Config {
     }
 
     /// Rate at which the engine runs inside, Hz: [`Self::oversampling`] times the smallest multiple
-    /// of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what a stroke sounds and feels like
+    /// of [`Self::sample_rate_hz`] from 32 kHz on, so that what a stroke sounds and feels like
     /// does not depend on the rate of the outputs. Sources that keep time (sand, scales and
     /// crossfades that change) are made for this rate.
     #[must_use]

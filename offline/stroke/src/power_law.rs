@@ -3,8 +3,9 @@
 //! ```text
 //! S(q) = a² c q^−α, flat beyond the outer scale; under a tip the engine's own octaves
 //! ```
-//! Gauss–Newton over exponent and level for every outer scale, at once or over octaves; an outer
-//! scale has to earn its place.
+//! Gauss–Newton over exponent, level and outer scale. Under a tip a law without an outer scale
+//! would put the flat long waves down to the exponent; bare ground may have none, so there the
+//! scale, sharp or gradual, has to earn its place.
 
 use crate::db;
 use crate::octave_noise::{octave_shape, wavelength_m};
@@ -80,24 +81,24 @@ impl PowerLaw {
     /// Law through the bands, and what a tip of this radius leaves of it.
     #[must_use]
     pub fn through(bands: &[Band], tip_radius_m: f64) -> Self {
-        // An outer scale is a constant more: it has to earn it.
-        const EARNED: f64 = 9.0;
         let seen = Seen::new(bands, tip_radius_m);
         let longest = bands.first().map_or(0, |band| band.band);
         let scale_m = |further: usize| 1.0 / wavenumber(longest + further);
+        let least = |best: (f64, Self), now: (f64, Self)| if now.0 < best.0 { now } else { best };
         // The engine's octaves turn flat over octaves, not at once.
-        let knees = (0..if tip_radius_m > 0.0 { 0 } else { 12 }).map(|further| (scale_m(further), false));
-        let gradual = [2, 6, 10].map(|further| (scale_m(further), true));
+        let [first, others @ ..] = [2, 6, 10].map(|further| seen.fitted(scale_m(further), true));
+        let gradual = others.into_iter().fold(first, least);
+        if tip_radius_m > 0.0 {
+            return gradual.1;
+        }
+        // An outer scale is a constant more: it has to earn it.
+        const EARNED: f64 = 9.0;
         let bare = seen.fitted(f64::INFINITY, false);
-        let with_scale = knees.chain(gradual).map(|(scale_m, is_gradual)| seen.fitted(scale_m, is_gradual));
-        let all: Vec<(f64, Self)> = std::iter::once(bare).chain(with_scale).collect();
-        let better = |best: (f64, Self), now: &(f64, Self)| {
-            if now.0 + EARNED < best.0 { (now.0 + EARNED, now.1) } else { best }
-        };
-        let (_, law) = all[1..].iter().fold(all[0], better);
-        // An outer scale that explains more, but has not earned its place, leaves a doubt.
-        let (own, nearest) = (all[0].0, all.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&all[0]));
-        let doubt = if nearest.0 < own { (nearest.1.alpha - law.alpha).abs() } else { 0.0 };
+        let knees = (0..12).map(|further| seen.fitted(scale_m(further), false));
+        let best = knees.fold(gradual, least);
+        // One that explains more, but has not earned its place, leaves a doubt.
+        let law = if best.0 + EARNED < bare.0 { best.1 } else { bare.1 };
+        let doubt = if best.0 < bare.0 { (best.1.alpha - law.alpha).abs() } else { 0.0 };
         Self { alpha_se: law.alpha_se.hypot(doubt), ..law }
     }
 }
@@ -223,6 +224,27 @@ mod tests {
                     law.alpha_se
                 );
             }
+        }
+    }
+
+    // Long waves beyond 10 mm are flat, and a stroke of few seconds tells each third octave to a
+    // decibel only.
+    #[test]
+    fn flat_long_waves_are_not_put_down_to_the_slope_of_matte_ground_under_a_tip() {
+        let field = FractalNoise::new(5);
+        for tip_radius_m in [1.6e-3, 3e-3] {
+            let weights = OctaveWeights::new(&Relief {
+                rms_at_1mm_m: 1e-6,
+                outer_scale_m: 0.01,
+                tip_radius_m,
+                longest_wavelength_m: f64::INFINITY,
+            });
+            let spectra: Vec<Vec<f64>> =
+                (0..OCTAVES).map(|i| octave_spectrum(&field, &weights, 1.0, i, 17..42)).collect();
+            let sum = |k: usize| spectra.iter().map(|spectrum| spectrum[k]).sum();
+            let band = |k: usize| Band { band: 17 + k, level_db: db(sum(k)), se_db: 1.0 };
+            let law = PowerLaw::through(&(0..25).map(band).collect::<Vec<_>>(), tip_radius_m);
+            assert!((law.alpha - 1.0).abs() < 0.05, "tip {tip_radius_m} m: {}", law.alpha);
         }
     }
 }

@@ -254,18 +254,8 @@ fn solve(
     }
     let lines_q: Vec<(f64, f64)> =
         lines.iter().map(|line| (1.0 / line.period_m, 0.003 / line.period_m)).collect();
-    let mut slopes = Vec::new();
-    let (mut levels, mut parted);
-    let mut round = 0;
-    loop {
-        levels = relief::levels((all, &groups), floors, band_hz, &lines_q, &slopes, &colour_db);
-        parted = colour::part(&levels, &groups, with_colour, level_db);
-        slopes = relief::slopes(&parted.bands);
-        round += 1;
-        if round == 3 {
-            break;
-        }
-    }
+    let levels = relief::levels((all, &groups), floors, band_hz, &lines_q, &colour_db);
+    let parted = colour::part(&levels, &groups, with_colour, level_db);
     if parted.bands.len() < 4 {
         return Err(StrokeError::new(
             "recording",
