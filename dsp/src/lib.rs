@@ -36,6 +36,7 @@
 extern crate std;
 
 pub mod actuator;
+pub mod bessel;
 pub mod butterworth;
 pub mod damping;
 pub mod diffuse;
