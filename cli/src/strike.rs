@@ -1,8 +1,10 @@
 //! `asperity strike WHAT -o DIR`: what a thing sounds like when it is hit, without a scene and
 //! without a log.
 
+use crate::arguments::{plain, positive, three};
 use crate::error::CliError;
 use crate::fit;
+use crate::scene_log::rounded;
 use crate::sounds::{self, Folder, MOST_TAIL_S, Sound, Told, short, stem, take_suffix};
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
 use asperity::{Material, ModalModel, Stock};
@@ -74,18 +76,8 @@ fn material(name: &str) -> Result<Material, String> {
     Material::by_name(name).ok_or_else(|| format!("must be one of: {}", Material::names()))
 }
 
-/// A number above 0 of the command line.
-pub fn positive(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
-        _ => Err("must be a number above 0".to_owned()),
-    }
-}
-
 fn place(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers = numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
-    numbers.ok_or_else(|| "must be three numbers in metres, such as 0.07,0,0.1".to_owned())
+    three(text, " in metres, such as 0.07,0,0.1")
 }
 
 /// Runs the verb.
@@ -179,10 +171,8 @@ impl Body {
             Kind::Modes => options.what.clone(),
             Kind::Recording => {
                 let modes = folder.path().join(format!("{}.modes.json", stem(&options.what)));
-                let fitted = fit::fit(&fit::Options {
-                    burst_ms: Some(BURST_MS),
-                    ..fit::Options::plain(options.what.clone(), modes.clone())
-                })?;
+                let fitted =
+                    fit::fit(&fit::Options { burst_ms: Some(BURST_MS), ..plain(&options.what, &modes)? })?;
                 told.assumed.push(format!(
                     "fitted {}: {} modes, {:.0} dB above what they leave, in {}",
                     options.what.display(),
@@ -261,14 +251,14 @@ impl Body {
                 along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
             });
             let size_m = extent_m.fold(0.0, f64::max);
-            at_m.map(|x| rounded(x + size_m * spread(aside)))
+            at_m.map(|x| rounded(x + size_m * spread(aside), 9))
         });
         LogEvent::Impact {
             body: "body".to_owned(),
             other: None,
-            speed_m_s: rounded(speed_m_s * spread(faster).exp()),
-            mass_kg: rounded(options.mass * spread(heavier).exp()),
-            radius_m: rounded(options.radius * spread(rounder).exp()),
+            speed_m_s: rounded(speed_m_s * spread(faster).exp(), 9),
+            mass_kg: rounded(options.mass * spread(heavier).exp(), 9),
+            radius_m: rounded(options.radius * spread(rounder).exp(), 9),
             striker: Striker::from(*striker),
             restitution: RESTITUTION,
             position: options.position,
@@ -277,9 +267,4 @@ impl Body {
             hand: LogHand::default(),
         }
     }
-}
-
-/// Nine digits behind the point, for short lines.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }

@@ -157,9 +157,7 @@ impl Details {
 
 /// Writes a modes file.
 pub fn write(outputs: &mut Outputs, path: &Path, body: &Body<'_>) -> Result<(), CliError> {
-    let text = serde_json::to_string_pretty(body)
-        .map_err(|error| CliError::file(path, error, "please report it with the input"))?;
-    outputs.write(path, text.as_bytes())
+    outputs.write_json(path, body)
 }
 
 fn plain(mode: &Mode) -> FileMode {

@@ -117,17 +117,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         warnings: std::mem::take(&mut scene.told),
         files: outputs.commit()?,
     };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "{}: {} bodies, {} surfaces",
-        options.output.display(),
-        report.bodies,
-        report.surfaces
-    ));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let Report { bodies, surfaces, warnings, .. } = &report;
+        format!(
+            "{}: {bodies} bodies, {surfaces} surfaces{}",
+            options.output.display(),
+            output::warned(warnings)
+        )
+    })
 }
 
 /// Bodies and surfaces of the nodes of a document.

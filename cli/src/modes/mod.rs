@@ -3,6 +3,7 @@
 mod options;
 mod picture;
 
+use crate::arguments::plain;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
@@ -14,7 +15,7 @@ use asperity_shape::{Elastic, Making, Mesh};
 use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Steps of the progress bar.
@@ -52,7 +53,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let report = make(options, &mut |done| progress.reach(done));
     drop(progress);
     let report = report?;
-    if options.json { output::say_json(&report) } else { say(&report, options) }
+    output::say_report(&report, options.json, || in_words(&report, options))
 }
 
 /// Modes of a mesh of a material, `size_m` long or as long as it is, as `asperity modes` writes
@@ -68,7 +69,7 @@ pub fn model(
 ) -> Result<ModalModel, CliError> {
     let Material { young_pa, poisson, density_kg_m3, .. } = *material;
     let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::from_error)?;
-    let wanted = Options::plain(mesh.into(), PathBuf::new()).wanted()?;
+    let wanted = plain::<Options>(mesh, mesh)?.wanted()?;
     let making = Making { material: elastic, size_m, unit_m: None, thickness_m: None, wanted };
     let told =
         |error: asperity_shape::ShapeError| CliError::from_error(error.within(&mesh.display().to_string()));
@@ -177,21 +178,18 @@ fn sheet(mesh: &Mesh, options: &Options) -> Result<SurfaceMesh, CliError> {
     Ok(surface)
 }
 
-fn say(report: &Report, options: &Options) -> Result<(), CliError> {
-    output::say(&format!(
-        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s",
+fn in_words(report: &Report, options: &Options) -> String {
+    format!(
+        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s{}",
         options.output.display(),
         report.modes,
         report.lowest_hz,
         report.highest_hz,
         1e3 * report.mass_kg,
         report.degrees_of_freedom,
-        report.seconds
-    ));
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
+        report.seconds,
+        output::warned(&report.warnings)
+    )
 }
 
 /// Most memory the program has held so far, MiB; only where the system tells.

@@ -105,32 +105,6 @@ impl Unit {
 }
 
 impl Options {
-    /// The options of `asperity modes BODY -o OUT`.
-    #[must_use]
-    pub fn plain(body: PathBuf, output: PathBuf) -> Self {
-        Self {
-            body,
-            output,
-            material: None,
-            young_pa: None,
-            poisson: None,
-            density_kg_m3: None,
-            part: None,
-            unit: None,
-            size: None,
-            thickness: None,
-            damping_from: None,
-            radiation: false,
-            shapes_beside: false,
-            shapes_glb: false,
-            unwrap: UnwrapOptions::default(),
-            up_to: None,
-            max_modes: None,
-            plot: None,
-            json: false,
-        }
-    }
-
     /// Which modes to solve for.
     pub fn wanted(&self) -> Result<Wanted, CliError> {
         if let Some(hz) = self.up_to.filter(|hz| !(*hz >= 1.0 && *hz <= 1e6)) {

@@ -117,12 +117,7 @@ struct Pattern {
 /// When the picture cannot be read, is smaller than 64 × 64 or has no relief.
 pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
     let analysis = analyze(arguments)?;
-    if arguments.json {
-        output::say_json(&analysis)
-    } else {
-        output::say(&text(&analysis));
-        Ok(())
-    }
+    output::say_report(&analysis, arguments.json, || text(&analysis))
 }
 
 /// Reading, dimensions, lattice, pattern: what the progress bar counts.
@@ -235,10 +230,7 @@ fn text(analysis: &Analysis) -> String {
         }
         _ => lines += &without_lattice(analysis.frieze.as_ref()),
     }
-    for warning in &analysis.warnings {
-        let _ = write!(lines, "\nwarning: {warning}");
-    }
-    lines
+    lines + &output::warned(&analysis.warnings)
 }
 
 /// Pattern along one direction, or a remark that one of few repeats would not be seen.

@@ -175,11 +175,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let mut report = report(options, &made, file, SizeMm::of(&heights_m, texel_m));
     report.seconds = seconds;
     report.files = outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&in_words(options, &report));
-    Ok(())
+    output::say_report(&report, options.json, || in_words(options, &report))
 }
 
 fn settings(options: &Options) -> MetamerOptions {

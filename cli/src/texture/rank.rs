@@ -84,21 +84,17 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let &Options { strokes, width_m, relief_m, .. } = options;
     let (original, folder) = (options.original.clone(), options.folder.clone());
     let report = Report { original, folder, strokes, width_m, relief_m, ranking, warnings };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "taken to be {} mm wide and {} mm from black to white (--width-m, --relief-m); distances are d′ of one stroke: 1 is \
-         about just noticeable",
-        1e3 * width_m,
-        1e3 * relief_m
-    ));
-    report
-        .ranking
-        .iter()
-        .for_each(|Ranked { file, distance }| output::say(&format!("{distance:8.2}  {file}")));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let rows = report.ranking.iter().map(|Ranked { file, distance }| format!("\n{distance:8.2}  {file}"));
+        format!(
+            "taken to be {} mm wide and {} mm from black to white (--width-m, --relief-m); distances are d′ of one stroke: 1 is \
+             about just noticeable{}{}",
+            1e3 * width_m,
+            1e3 * relief_m,
+            rows.collect::<String>(),
+            output::warned(&report.warnings)
+        )
+    })
 }
 
 /// Names of the pictures in a folder, in order.
