@@ -1,6 +1,7 @@
 //! Arguments that several verbs take, and those of a verb that another one runs.
 
 use crate::error::CliError;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
 use std::ffi::OsString;
 use std::path::Path;
@@ -15,6 +16,25 @@ pub fn plain<T: Args>(input: &Path, output: &Path) -> Result<T, CliError> {
     let command = T::augment_args(Command::new("asperity").no_binary_name(true));
     let matches = command.try_get_matches_from([output_is, "--".into(), input.into()]);
     matches.and_then(|matches| T::from_arg_matches(&matches)).map_err(CliError::from_error)
+}
+
+/// Words that an option takes, what `--help` says of each, and what they mean.
+pub type Words<T, const N: usize> = [(&'static str, &'static str, T); N];
+
+/// The meaning of one of the words.
+pub fn one_of<T, const N: usize>(words: Words<T, N>) -> impl TypedValueParser<Value = T> + Clone
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let known = PossibleValuesParser::new(words.map(|(word, help, _)| PossibleValue::new(word).help(help)));
+    known.try_map(move |told| {
+        words.iter().find(|(word, ..)| *word == told).map(|(.., meaning)| *meaning).ok_or("is not known")
+    })
+}
+
+/// The word that means this; the first if none does.
+pub fn word_of<T: PartialEq>(words: &[(&'static str, &'static str, T)], meant: T) -> &'static str {
+    words.iter().find(|(.., meaning)| *meaning == meant).unwrap_or(&words[0]).0
 }
 
 /// A number above 0.

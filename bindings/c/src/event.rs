@@ -2,7 +2,7 @@
 //!
 //! Numbers that a game does not know are NAN ("not told"), ids 0, the actuator −1.
 
-use crate::material::{self, ASP_MATERIAL_CUSTOM, ASP_MATERIAL_DEFAULT};
+use crate::material::{self, ASP_MATERIAL_CUSTOM};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use asperity::{

@@ -12,7 +12,6 @@ use asperity_shape::modes_file::ModesFile;
 use asperity_shape::surface_mesh::SurfaceMesh;
 use asperity_shape::unwrap::Unwrapped;
 use asperity_shape::{Elastic, Making, Mesh};
-use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
 use std::path::Path;
@@ -98,7 +97,7 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     let making = Making {
         material,
         size_m: options.size,
-        unit_m: options.unit.map(Unit::metres),
+        unit_m: options.unit,
         thickness_m: options.thickness,
         wanted,
     };
@@ -173,7 +172,7 @@ fn sheet(mesh: &Mesh, options: &Options) -> Result<SurfaceMesh, CliError> {
             along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
         })
         .fold(0.0, f64::max);
-    let scale = options.size.map_or(options.unit.map_or(1.0, Unit::metres), |size_m| size_m / longest_m);
+    let scale = options.size.map_or(options.unit.unwrap_or(1.0), |size_m| size_m / longest_m);
     surface.points.iter_mut().flatten().for_each(|x| *x *= scale);
     Ok(surface)
 }

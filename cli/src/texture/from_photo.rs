@@ -7,7 +7,7 @@ mod scene;
 
 use super::object::ObjectOptions;
 use super::{bar, positive, refused};
-use crate::arguments::three;
+use crate::arguments::{Words, one_of, three};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
@@ -20,7 +20,7 @@ use asperity_pictures::photograph::{Photograph, load_reduced_photograph};
 use asperity_pictures::shape_from_shading::{Method, STEPS};
 use asperity_surface::image_io;
 use asperity_surface::raster::Raster;
-use clap::{Args, ValueEnum};
+use clap::Args;
 pub use report::Report;
 use report::Size;
 use std::path::{Path, PathBuf};
@@ -44,8 +44,8 @@ pub struct Options {
     #[arg(long, value_name = "X,Y,Z", value_parser = light, allow_hyphen_values = true)]
     pub light: Option<Light>,
     /// Method that finds heights; by the light unless given
-    #[arg(long, value_enum)]
-    pub method: Option<MethodName>,
+    #[arg(long, value_parser = one_of(METHODS))]
+    pub method: Option<Method>,
     /// Turn the heights over: what is bright lies deep
     #[arg(long)]
     pub bright_is_deep: bool,
@@ -80,17 +80,16 @@ pub struct Options {
 }
 
 /// Ways to find heights.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum MethodName {
-    /// Slopes that fit the shading and belong to a surface.
-    Integrable,
-    /// Tsai and Shah (1994), for comparison: its heights are no relief.
-    TsaiShah,
-    /// Bright is high: for light from everywhere.
-    DarkIsDeep,
-    /// Relief on a flat ground, lit from the viewer's direction.
-    FlatGround,
-}
+const METHODS: Words<Method, 4> = [
+    ("integrable", "Slopes that fit the shading and belong to a surface", Method::Integrable(STEPS)),
+    (
+        "tsai-shah",
+        "Tsai and Shah (1994), for comparison: its heights are no relief",
+        Method::TsaiShah(TSAI_SHAH_STEPS),
+    ),
+    ("dark-is-deep", "Bright is high: for light from everywhere", Method::DarkIsDeep),
+    ("flat-ground", "Relief on a flat ground, lit from the viewer's direction", Method::FlatGround),
+];
 
 fn light(text: &str) -> Result<Light, String> {
     Light::new(three(text, ", such as -0.5,-0.5,0.7")?).map_err(|error| error.to_string())
@@ -143,12 +142,7 @@ pub fn make(options: &Options) -> Result<Report, CliError> {
     let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / photograph.width_px as f64);
     let mut settings = PhotoOptions {
         light: options.light,
-        method: options.method.map(|name| match name {
-            MethodName::Integrable => Method::Integrable(STEPS),
-            MethodName::TsaiShah => Method::TsaiShah(TSAI_SHAH_STEPS),
-            MethodName::DarkIsDeep => Method::DarkIsDeep,
-            MethodName::FlatGround => Method::FlatGround,
-        }),
+        method: options.method,
         bright_is_deep: options.bright_is_deep,
         texel_m,
         relief_m: options.relief_m,
