@@ -62,6 +62,7 @@ pub mod simd;
 pub mod stick_slip;
 pub mod tangential;
 pub mod trajectory;
+pub mod vector;
 pub mod vibration_points;
 
 pub use error::DesignError;
