@@ -12,7 +12,7 @@ const STEPS: usize = 20;
 const FIRST_EDGE_HZ: f64 = 250.0;
 
 /// One band's envelope.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BandEnvelope {
     /// Lower edge, Hz.
     pub low_hz: f64,
