@@ -22,7 +22,7 @@ pub fn plain<T: Args>(input: &Path, output: &Path) -> Result<T, CliError> {
 pub type Words<T, const N: usize> = [(&'static str, &'static str, T); N];
 
 /// The meaning of one of the words.
-pub fn one_of<T, const N: usize>(words: Words<T, N>) -> impl TypedValueParser<Value = T> + Clone
+pub fn one_of<T, const N: usize>(words: Words<T, N>) -> impl TypedValueParser<Value = T>
 where
     T: Copy + Send + Sync + 'static,
 {
