@@ -4,11 +4,13 @@
 use crate::arguments::{plain, positive, three};
 use crate::error::CliError;
 use crate::fit;
+use crate::paths::has_end;
 use crate::scene_log::rounded;
 use crate::sounds::{self, Folder, MOST_TAIL_S, Sound, Told, short, stem, take_suffix};
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
 use asperity::{Material, ModalModel, Stock};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::vector::longest_side;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -132,11 +134,6 @@ impl Kind {
     }
 }
 
-/// Tests whether a file's name ends with one of these, in any case.
-pub fn has_end(path: &Path, ends: &[&str]) -> bool {
-    path.extension().is_some_and(|end| ends.iter().any(|known| end.eq_ignore_ascii_case(known)))
-}
-
 /// Body that rings.
 struct Body {
     name: String,
@@ -246,11 +243,7 @@ impl Body {
         let [faster, heavier, rounder, aside] = SPREAD;
         let at_m = self.model.shapes.as_ref().map(|shapes| {
             let at_m = options.at.unwrap_or(shapes.points_m[shapes.struck_point]);
-            let extent_m = (0..3).map(|axis| {
-                let along = shapes.points_m.iter().map(|point| point[axis]);
-                along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
-            });
-            let size_m = extent_m.fold(0.0, f64::max);
+            let size_m = longest_side(&shapes.points_m);
             at_m.map(|x| rounded(x + size_m * spread(aside), 9))
         });
         LogEvent::Impact {

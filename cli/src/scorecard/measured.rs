@@ -3,6 +3,7 @@
 use super::{Matrix, Part};
 use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
+use crate::paths::has_end;
 use crate::report;
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity::{Config, PathMode, Preset, Quantity};
@@ -98,8 +99,7 @@ pub fn recordings(folder: &Path, quick: bool) -> Result<Part> {
     let entries = std::fs::read_dir(folder).map_err(unread)?;
     let mut paths =
         entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>().map_err(unread)?;
-    let is_sound = |ending: &str| SOUNDS.iter().any(|known| ending.eq_ignore_ascii_case(known));
-    paths.retain(|path| path.extension().and_then(|ending| ending.to_str()).is_some_and(is_sound));
+    paths.retain(|path| has_end(path, &SOUNDS));
     paths.sort();
     paths.truncate(if quick { 3 } else { usize::MAX });
     let mut snr_db = Vec::new();

@@ -3,8 +3,9 @@
 use super::Options;
 use crate::arguments::plain;
 use crate::error::CliError;
+use crate::paths::has_end;
 use crate::sounds::{Folder, Told, stem, with_absolute_paths};
-use crate::strike::{has_end, slowest_per_s};
+use crate::strike::slowest_per_s;
 use crate::texture::from_photo;
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::{Material, ModalModel, PROBE_PRESETS, Wrap};

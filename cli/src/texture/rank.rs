@@ -3,6 +3,7 @@
 use super::{grey, positive};
 use crate::error::CliError;
 use crate::output;
+use crate::paths::has_end;
 use crate::progress::Progress;
 use asperity_evidence::likeness::Impression;
 use clap::Args;
@@ -103,14 +104,8 @@ fn pictures(folder: &Path) -> Result<Vec<String>, CliError> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
-        let is_picture = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)));
-        if let (true, Some(name)) =
-            (is_picture && path.is_file(), path.file_name().and_then(|name| name.to_str()))
-        {
-            names.push(name.to_owned());
+        if has_end(&path, &ENDINGS) && path.is_file() {
+            names.extend(path.file_name().and_then(|name| name.to_str()).map(str::to_owned));
         }
     }
     names.sort();

@@ -8,12 +8,13 @@ mod scene;
 use super::positive;
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use crate::paths::has_end;
 use asperity_stroke::report::Report;
 use asperity_stroke::{Options as FitOptions, StrokeError, StrokeSurface, Tool, models, surface};
 use clap::{Args, ValueEnum};
 use input::Recorded;
 use report::Written;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Make a touchable surface of recorded strokes
 #[derive(Debug, Args)]
@@ -105,8 +106,7 @@ fn found(options: &Options, fit_options: &FitOptions) -> Result<StrokeSurface, C
     let first = &options.strokes[0];
     let at =
         |error: StrokeError| CliError::new(error.field, error.what, error.expected).within(first.display());
-    let is_models = |path: &Path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml"));
-    if options.strokes.iter().any(|path| is_models(path)) {
+    if options.strokes.iter().any(|path| has_end(path, &["xml"])) {
         if options.strokes.len() > 1 {
             return Err(CliError::file(
                 first,
