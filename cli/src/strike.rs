@@ -12,7 +12,7 @@ use asperity::{Material, ModalModel, Stock};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::vector::longest_side;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use toml::{Table, Value};
 
 /// Falls by 80 dB in this over the decay, as a power of e.
