@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use asperity_batch::{DataSet, Outcome, Spec, verify};
+use asperity_batch::{DataSet, Outcome, Spec, Verified, verify};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -143,28 +143,17 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
             report.clipped_samples
         ));
     }
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "{} shards made, {} kept; {} of {} are there\nwrote {}",
-        report.made,
-        report.kept,
-        report.shards_there,
-        report.shards,
-        folder.join(asperity_batch::manifest::NAME).display()
-    ));
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
-}
-
-#[derive(Debug, Serialize)]
-struct Checked {
-    shards: u64,
-    missing: u64,
-    rendered: u64,
+    output::say_report(&report, options.json, || {
+        format!(
+            "{} shards made, {} kept; {} of {} are there\nwrote {}{}",
+            report.made,
+            report.kept,
+            report.shards_there,
+            report.shards,
+            folder.join(asperity_batch::manifest::NAME).display(),
+            output::warned(&report.warnings)
+        )
+    })
 }
 
 fn check(options: &VerifyOptions) -> Result<(), CliError> {
@@ -173,18 +162,12 @@ fn check(options: &VerifyOptions) -> Result<(), CliError> {
     let found =
         verify(&options.folder, options.sample, &mut || progress.advance(1)).map_err(CliError::from_error)?;
     drop(progress);
-    if options.json {
-        return output::say_json(&Checked {
-            shards: found.shards,
-            missing: found.missing,
-            rendered: found.rendered,
-        });
-    }
-    output::say(&format!(
-        "{} shards hold what the manifest says, {} are not there yet; {} strokes rendered again to the same bits",
-        found.shards, found.missing, found.rendered
-    ));
-    Ok(())
+    output::say_report(&found, options.json, || {
+        let Verified { shards, missing, rendered } = found;
+        format!(
+            "{shards} shards hold what the manifest says, {missing} are not there yet; {rendered} strokes rendered again to the same bits"
+        )
+    })
 }
 
 #[cfg(test)]

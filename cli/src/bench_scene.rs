@@ -1,5 +1,6 @@
 //! Scenes made in memory for measuring: fingers that stroke plates whose bodies ring.
 
+use crate::error::CliError;
 use asperity::{
     ChannelId, Config, ContactEvent, ContactId, ContactSample, Extent, Material, ModalModel, Mode, Renderer,
     Scene, Surface, SurfaceId, Wrap,
@@ -71,13 +72,24 @@ pub fn be_late(renderer: &mut Renderer, level: usize) {
 }
 
 impl Bench {
-    /// Builds the scene; none only if the engine refuses what it should accept.
-    pub fn new(load: Load, config: Config) -> Option<Self> {
+    /// Builds the scene.
+    ///
+    /// # Errors
+    /// Only if the engine refuses what it should accept.
+    pub fn new(load: Load, config: Config) -> Result<Self, CliError> {
         Self::of(load, config, &modes(load.modes_per_body))
     }
 
     /// Measurement with bodies of these modes; without any, where `load` has none.
-    pub fn of(load: Load, config: Config, model: &ModalModel) -> Option<Self> {
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of(load: Load, config: Config, model: &ModalModel) -> Result<Self, CliError> {
+        let refused = || CliError::new("scene", "cannot be built", "please report it");
+        Self::built(load, config, model).ok_or_else(refused)
+    }
+
+    fn built(load: Load, config: Config, model: &ModalModel) -> Option<Self> {
         let rate_hz = config.sample_rate_hz;
         let asperity::Engine { mut scene, renderer, .. } = config.build().ok()?;
         let map = plate()?;

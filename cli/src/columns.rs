@@ -1,6 +1,7 @@
 //! Recorded samples as tables of text: a header line, a row a sample.
 
 use crate::error::CliError;
+use crate::paths::has_end;
 use std::path::{Path, PathBuf};
 
 /// Name of the column of times, s.
@@ -11,8 +12,7 @@ const UNEVEN: f64 = 0.05;
 /// Tests whether a file is a table by its ending.
 #[must_use]
 pub fn is_table(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|end| ["csv", "tsv", "txt"].iter().any(|known| end.eq_ignore_ascii_case(known)))
+    has_end(path, &["csv", "tsv", "txt"])
 }
 
 /// A table with a header line: names and numbers of its columns.

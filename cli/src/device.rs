@@ -46,23 +46,21 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     outputs.write(&options.output, profile(options, &measured).as_bytes())?;
     outputs.commit()?;
     let Measured { profile, error, lag_s, cut_off } = &measured;
-    if options.json {
-        return output::say_json(&serde_json::json!({
-            "profile": profile, "error": error, "lag_s": lag_s, "cut_off": cut_off,
-        }));
-    }
-    output::say(&format!(
-        "{}: {:.2} ± {:.2} Hz, Q {:.2} ± {:.2}, {:.0} to {:.0} Hz, {:.1} % of the samples cut off and left out",
-        options.output.display(),
-        profile.resonance_hz,
-        error.resonance_hz,
-        profile.quality,
-        error.quality,
-        profile.band_hz[0],
-        profile.band_hz[1],
-        100.0 * cut_off
-    ));
-    Ok(())
+    let report =
+        serde_json::json!({ "profile": profile, "error": error, "lag_s": lag_s, "cut_off": cut_off });
+    output::say_report(&report, options.json, || {
+        format!(
+            "{}: {:.2} ± {:.2} Hz, Q {:.2} ± {:.2}, {:.0} to {:.0} Hz, {:.1} % of the samples cut off and left out",
+            options.output.display(),
+            profile.resonance_hz,
+            error.resonance_hz,
+            profile.quality,
+            error.quality,
+            profile.band_hz[0],
+            profile.band_hz[1],
+            100.0 * cut_off
+        )
+    })
 }
 
 fn of_table(path: &Path) -> Result<Sweep, CliError> {

@@ -50,12 +50,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     drop(progress);
     ensure_folder(folder)?;
     let mut outputs = Outputs::new();
-    let text = serde_json::to_string_pretty(&evidence).map_err(CliError::from_error)?;
-    outputs.write(&path, text.as_bytes())?;
+    outputs.write_json(&path, &evidence)?;
     outputs.commit()?;
-    if options.json {
-        return output::say_json(&evidence);
-    }
-    output::say(&format!("{}\nwrote {}", evidence.sentence, path.display()));
-    Ok(())
+    output::say_report(&evidence, options.json, || format!("{}\nwrote {}", evidence.sentence, path.display()))
 }

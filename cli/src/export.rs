@@ -79,12 +79,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let mut outputs = Outputs::new();
     outputs.write(&options.output, &document.finish(material.as_ref(), packed))?;
     report.files = outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!("{}: {} bodies, {} modes", options.output.display(), report.bodies, report.modes));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let Report { bodies, modes, warnings, .. } = &report;
+        format!("{}: {bodies} bodies, {modes} modes{}", options.output.display(), output::warned(warnings))
+    })
 }
 
 /// A body's name: its file's without endings.

@@ -162,30 +162,26 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         kernels,
         paired,
     };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&table(&report));
-    Ok(())
+    output::say_report(&report, options.json, || table(&report))
 }
 
 fn refused(error: impl std::fmt::Display) -> CliError {
     CliError::from_error(error).within("headroom")
 }
 
-fn scene(name: &str, load: Load, threads: u8) -> Result<SceneRow, CliError> {
+/// Times of the blocks of a scene, s, after the first seconds: the fingers land, or everything
+/// rings out.
+fn block_times(load: Load, threads: u8, first_s: f64, length_s: f64) -> Result<Vec<f64>, CliError> {
     let config =
         Config { sample_rate_hz: SAMPLE_RATE_HZ, threads: usize::from(threads), ..Config::default() };
-    let mut bench =
-        Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let mut bench = Bench::new(load, config)?;
     let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
-    let blocks = (SCENE_S * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES;
-    // The first half second lands the fingers, or lets everything ring out before it is timed.
-    let warm_up = if load.lift { 6.0 } else { 0.5 };
-    for _ in 0..(warm_up * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES {
-        bench.block(&mut haptic, &mut audio);
-    }
-    let mut times_s: Vec<f64> = (0..blocks).map(|_| bench.block(&mut haptic, &mut audio)).collect();
+    let [first, length] = [first_s, length_s].map(|s| (s * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES);
+    Ok((0..first + length).map(|_| bench.block(&mut haptic, &mut audio)).skip(first).collect())
+}
+
+fn scene(name: &str, load: Load, threads: u8) -> Result<SceneRow, CliError> {
+    let mut times_s = block_times(load, threads, if load.lift { 6.0 } else { 0.5 }, SCENE_S)?;
     times_s.sort_by(f64::total_cmp);
     let p99_9_s = quantile(&times_s, 0.999);
     let block = Timing::of(times_s);
@@ -227,20 +223,11 @@ fn growth() -> Result<Vec<GrowthRow>, CliError> {
 
 /// Time of a sample of a scene in the median of its blocks.
 fn block_ns(load: Load) -> Result<f64, CliError> {
-    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
-    let mut bench =
-        Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
-    let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
-    let mut block = || bench.block(&mut haptic, &mut audio);
-    for _ in 0..344 {
-        block();
-    }
-    let blocks = (GROWTH_S * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES;
-    Ok(Timing::of((0..blocks).map(|_| block()).collect()).median * 1e9 / BLOCK_FRAMES as f64)
+    Ok(Timing::of(block_times(load, 1, 0.5, GROWTH_S)?).median * 1e9 / BLOCK_FRAMES as f64)
 }
 
-/// The bank alone, force in every sample.
-fn bank(count: usize) -> Result<BankRow, CliError> {
+/// Renders blocks of a bank of so many modes, force in every sample.
+fn ringing(count: usize) -> Result<impl FnMut(), CliError> {
     let mut modes = modes(count).modes;
     sort_by_decay(&mut modes);
     let groups = design_groups(&modes, SAMPLE_RATE_HZ, &GroupOptions::IMPULSE_RING)
@@ -250,14 +237,18 @@ fn bank(count: usize) -> Result<BankRow, CliError> {
     let mut bank = ModalBank::new(Level::detect(), groups, states);
     let mut rng = Rng::new(1);
     let force: Vec<f32> = (0..BLOCK_FRAMES).map(|_| 1e-6 * (rng.uniform() as f32 - 0.5)).collect();
-    let mut out = [0.0f32; BLOCK_FRAMES];
-    let mut at = 0;
-    let ns = ns_spread(BLOCK_FRAMES * count, || {
+    let (mut at, mut out) = (0, [0.0f32; BLOCK_FRAMES]);
+    Ok(move || {
         out.fill(0.0);
         bank.render(at, Inputs::One(&force), &mut out);
         at += BLOCK_FRAMES as u64;
         std::hint::black_box(&out);
-    });
+    })
+}
+
+/// The bank alone, force in every sample.
+fn bank(count: usize) -> Result<BankRow, CliError> {
+    let ns = ns_spread(BLOCK_FRAMES * count, ringing(count)?);
     Ok(BankRow {
         modes: count,
         mode_samples_per_s: 1e9 / ns.median,

@@ -16,6 +16,7 @@
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
 mod answer;
+mod arguments;
 #[cfg(feature = "data-sets")]
 mod batch;
 #[cfg(not(feature = "data-sets"))]

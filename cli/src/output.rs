@@ -86,6 +86,16 @@ impl Outputs {
         Ok(BufWriter::with_capacity(1 << 18, file))
     }
 
+    /// Writes a value as a JSON file.
+    ///
+    /// # Errors
+    /// As [`Self::create`], or when the value is none of JSON's.
+    pub fn write_json(&mut self, path: &Path, value: &impl serde::Serialize) -> Result<(), CliError> {
+        let text = serde_json::to_string_pretty(value)
+            .map_err(|error| CliError::file(path, error, "please report it with the input"))?;
+        self.write(path, text.as_bytes())
+    }
+
     /// Writes a whole file.
     ///
     /// # Errors
@@ -204,6 +214,34 @@ pub fn say(text: &str) {
 fn print(text: &str) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{text}").and_then(|()| out.flush())
+}
+
+/// Warnings as lines that follow a text.
+#[must_use]
+pub fn warned(warnings: &[String]) -> String {
+    warnings.iter().map(|warning| format!("\nwarning: {warning}")).collect()
+}
+
+/// Files in a row.
+#[must_use]
+pub fn listed(files: &[PathBuf]) -> String {
+    files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// Prints a report: as one JSON object, or in words.
+///
+/// # Errors
+/// As [`say_json`].
+pub fn say_report(
+    report: &impl serde::Serialize,
+    as_json: bool,
+    in_words: impl FnOnce() -> String,
+) -> Result<(), CliError> {
+    if as_json {
+        return say_json(report);
+    }
+    say(&in_words());
+    Ok(())
 }
 
 /// Prints one JSON object to stdout.

@@ -102,12 +102,17 @@ fn values(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
     paths.chain(texts).collect()
 }
 
+/// Tests whether a file's name ends with one of these, in any case.
+pub fn has_end(path: &Path, ends: &[&str]) -> bool {
+    path.extension().is_some_and(|end| ends.iter().any(|known| end.eq_ignore_ascii_case(known)))
+}
+
 /// Refuses a path that ends as another kind of file does.
 ///
 /// # Errors
 /// When it does.
 pub fn ends_in(path: &Path, ending: &str) -> Result<(), CliError> {
-    if path.extension().is_some_and(|is| is.eq_ignore_ascii_case(ending)) {
+    if has_end(path, &[ending]) {
         return Ok(());
     }
     Err(CliError::file(

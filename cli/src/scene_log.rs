@@ -49,3 +49,9 @@ fn names_of(file: &SceneFile) -> Names {
 pub fn read_past(place: &str) -> String {
     format!("{place}: is a key of the format, but this version does not act on it")
 }
+
+/// A number with so many digits behind the point, for short lines of a log.
+pub fn rounded(value: f64, digits: i32) -> f64 {
+    let unit = 10f64.powi(digits);
+    (value * unit).round() / unit
+}

@@ -1,14 +1,18 @@
 //! `asperity strike WHAT -o DIR`: what a thing sounds like when it is hit, without a scene and
 //! without a log.
 
+use crate::arguments::{plain, positive, three};
 use crate::error::CliError;
 use crate::fit;
+use crate::paths::has_end;
+use crate::scene_log::rounded;
 use crate::sounds::{self, Folder, MOST_TAIL_S, Sound, Told, short, stem, take_suffix};
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
 use asperity::{Material, ModalModel, Stock};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::vector::longest_side;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use toml::{Table, Value};
 
 /// Falls by 80 dB in this over the decay, as a power of e.
@@ -74,18 +78,8 @@ fn material(name: &str) -> Result<Material, String> {
     Material::by_name(name).ok_or_else(|| format!("must be one of: {}", Material::names()))
 }
 
-/// A number above 0 of the command line.
-pub fn positive(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
-        _ => Err("must be a number above 0".to_owned()),
-    }
-}
-
 fn place(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers = numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
-    numbers.ok_or_else(|| "must be three numbers in metres, such as 0.07,0,0.1".to_owned())
+    three(text, " in metres, such as 0.07,0,0.1")
 }
 
 /// Runs the verb.
@@ -140,11 +134,6 @@ impl Kind {
     }
 }
 
-/// Tests whether a file's name ends with one of these, in any case.
-pub fn has_end(path: &Path, ends: &[&str]) -> bool {
-    path.extension().is_some_and(|end| ends.iter().any(|known| end.eq_ignore_ascii_case(known)))
-}
-
 /// Body that rings.
 struct Body {
     name: String,
@@ -179,10 +168,8 @@ impl Body {
             Kind::Modes => options.what.clone(),
             Kind::Recording => {
                 let modes = folder.path().join(format!("{}.modes.json", stem(&options.what)));
-                let fitted = fit::fit(&fit::Options {
-                    burst_ms: Some(BURST_MS),
-                    ..fit::Options::plain(options.what.clone(), modes.clone())
-                })?;
+                let fitted =
+                    fit::fit(&fit::Options { burst_ms: Some(BURST_MS), ..plain(&options.what, &modes)? })?;
                 told.assumed.push(format!(
                     "fitted {}: {} modes, {:.0} dB above what they leave, in {}",
                     options.what.display(),
@@ -256,19 +243,15 @@ impl Body {
         let [faster, heavier, rounder, aside] = SPREAD;
         let at_m = self.model.shapes.as_ref().map(|shapes| {
             let at_m = options.at.unwrap_or(shapes.points_m[shapes.struck_point]);
-            let extent_m = (0..3).map(|axis| {
-                let along = shapes.points_m.iter().map(|point| point[axis]);
-                along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
-            });
-            let size_m = extent_m.fold(0.0, f64::max);
-            at_m.map(|x| rounded(x + size_m * spread(aside)))
+            let size_m = longest_side(&shapes.points_m);
+            at_m.map(|x| rounded(x + size_m * spread(aside), 9))
         });
         LogEvent::Impact {
             body: "body".to_owned(),
             other: None,
-            speed_m_s: rounded(speed_m_s * spread(faster).exp()),
-            mass_kg: rounded(options.mass * spread(heavier).exp()),
-            radius_m: rounded(options.radius * spread(rounder).exp()),
+            speed_m_s: rounded(speed_m_s * spread(faster).exp(), 9),
+            mass_kg: rounded(options.mass * spread(heavier).exp(), 9),
+            radius_m: rounded(options.radius * spread(rounder).exp(), 9),
             striker: Striker::from(*striker),
             restitution: RESTITUTION,
             position: options.position,
@@ -277,9 +260,4 @@ impl Body {
             hand: LogHand::default(),
         }
     }
-}
-
-/// Nine digits behind the point, for short lines.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }

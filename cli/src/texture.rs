@@ -16,7 +16,9 @@ pub mod shader;
 pub mod solid;
 pub mod solid_of;
 
+use crate::arguments::positive;
 use crate::error::CliError;
+use crate::output;
 use crate::progress::Progress;
 use asperity_dsp::DesignError;
 use asperity_surface::image_io::{self, Channel};
@@ -86,14 +88,6 @@ fn bar(what: &'static str) -> impl FnMut(f64) {
     }
 }
 
-/// A number above 0.
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("must be a number above 0".to_owned()),
-    }
-}
-
 /// Report of the verbs that make heights from nothing.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Preview {
@@ -123,7 +117,7 @@ fn write_heights(path: &Path, heights_m: &Raster, metres_per_px: f64) -> Result<
     let mean = heights_m.mean();
     let count = heights_m.values.len().max(1) as f64;
     let rms_m = (heights_m.values.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / count).sqrt();
-    let mut outputs = crate::output::Outputs::new();
+    let mut outputs = output::Outputs::new();
     outputs.write(path, &asperity_plot::pixels::png16(heights_m.width, heights_m.height, &grey))?;
     Ok(Preview {
         size: heights_m.width,
@@ -138,20 +132,17 @@ fn write_heights(path: &Path, heights_m: &Raster, metres_per_px: f64) -> Result<
 
 /// Prints a preview as JSON or in words.
 fn say_preview(preview: &Preview, json: bool, width_m: f64) -> Result<(), CliError> {
-    if json {
-        return crate::output::say_json(preview);
-    }
-    let files: Vec<String> = preview.files.iter().map(|path| path.display().to_string()).collect();
-    crate::output::say(&format!(
-        "{0} × {0} texels of {1}: relief {2}, rms {3}\nwrote {4}; in a scene file: width_m = {5}, height_m = {5}, relief_m = {6:.4e}",
-        preview.size,
-        asperity_plot::quantity(preview.metres_per_px, "m"),
-        asperity_plot::quantity(preview.relief_m, "m"),
-        asperity_plot::quantity(preview.rms_m, "m"),
-        files.join(", "),
-        width_m,
-        preview.relief_m,
-    ));
-    preview.warnings.iter().for_each(|warning| crate::output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(preview, json, || {
+        format!(
+            "{0} × {0} texels of {1}: relief {2}, rms {3}\nwrote {4}; in a scene file: width_m = {5}, height_m = {5}, relief_m = {6:.4e}{7}",
+            preview.size,
+            asperity_plot::quantity(preview.metres_per_px, "m"),
+            asperity_plot::quantity(preview.relief_m, "m"),
+            asperity_plot::quantity(preview.rms_m, "m"),
+            output::listed(&preview.files),
+            width_m,
+            preview.relief_m,
+            output::warned(&preview.warnings),
+        )
+    })
 }

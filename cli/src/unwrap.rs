@@ -20,12 +20,6 @@ pub struct UnwrapOptions {
     pub phi: f64,
 }
 
-impl Default for UnwrapOptions {
-    fn default() -> Self {
-        Self { unwrap: None, phi: PHI }
-    }
-}
-
 /// Way to unwrap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Method {

@@ -22,7 +22,7 @@
 //! [`PEAK_WAVELENGTH_CELLS`] (both computed from the equation,
 //! `tests/independent/noise_spectrum.py`).
 
-use crate::simd::Vector;
+use crate::simd::{Single, Vector};
 
 /// Mean square of the noise.
 pub const VARIANCE: f64 = 0.092_94;
@@ -57,12 +57,12 @@ pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
 ) -> V::Single {
     let place = Place::new(v, from_centre);
     let (spread_x, spread_y) = (v.splat_word(SPREAD_X), v.splat_word(SPREAD_Y));
-    let column = v.add_word(v.mul_word(column, spread_x), v.splat_word(key));
-    let row = v.mul_word(row, spread_y);
-    let next_column = v.add_word(column, spread_x);
+    let column = column * spread_x + v.splat_word(key);
+    let row = row * spread_y;
+    let next_column = column + spread_x;
     let a = along(v, gradient(v, column, row), place.left, place.top);
     let b = along(v, gradient(v, next_column, row), place.right, place.top);
-    let row = v.add_word(row, spread_y);
+    let row = row + spread_y;
     let c = along(v, gradient(v, column, row), place.left, place.bottom);
     let d = along(v, gradient(v, next_column, row), place.right, place.bottom);
     place.between(v, [a, b, c, d])
@@ -107,27 +107,21 @@ struct Place<F> {
     bottom: F,
 }
 
-impl<F: Copy> Place<F> {
+impl<F: Single> Place<F> {
     #[inline(always)]
     fn new<const N: usize, V: Vector<N, Single = F>>(v: V, from_centre: [V::Word; 2]) -> Self {
         let (half, cell) = (v.splat(0.5), v.splat(1.0 / 4_294_967_296.0));
-        let x = v.mul(v.signed_to_single(from_centre[0]), cell);
-        let y = v.mul(v.signed_to_single(from_centre[1]), cell);
-        Self {
-            x,
-            y,
-            left: v.add(x, half),
-            right: v.sub(x, half),
-            top: v.add(y, half),
-            bottom: v.sub(y, half),
-        }
+        let x = v.signed_to_single(from_centre[0]) * cell;
+        let y = v.signed_to_single(from_centre[1]) * cell;
+        Self { x, y, left: x + half, right: x - half, top: y + half, bottom: y - half }
     }
 
     /// Values of the corners, faded into each other.
     #[inline(always)]
     fn between<const N: usize, V: Vector<N, Single = F>>(&self, v: V, [a, b, c, d]: [F; 4]) -> F {
         let (fx, fy) = (centred_fade(v, self.x), centred_fade(v, self.y));
-        between(v, [between(v, [a, b], fx), between(v, [c, d], fx)], fy)
+        let between = |a, b, f| a + f * (b - a);
+        between(between(a, b, fx), between(c, d, fx), fy)
     }
 }
 
@@ -135,10 +129,10 @@ impl<F: Copy> Place<F> {
 /// products of their hash.
 #[inline(always)]
 fn gradient<const N: usize, V: Vector<N>>(v: V, column: V::Word, row: V::Word) -> Gradient<V::Word> {
-    let h = v.xor(column, row);
-    let h = v.xor(h, v.right(h, 15));
-    let (a, b) = (v.mul_word(h, v.splat_word(FINISH_X)), v.mul_word(h, v.splat_word(FINISH_Y)));
-    [v.and(a, v.splat_word(SIGN)), v.and(b, v.splat_word(SIGN))]
+    let h = column ^ row;
+    let h = h ^ (h >> 15);
+    let (a, b) = (h * v.splat_word(FINISH_X), h * v.splat_word(FINISH_Y));
+    [a & v.splat_word(SIGN), b & v.splat_word(SIGN)]
 }
 
 /// g · d
@@ -149,21 +143,15 @@ fn along<const N: usize, V: Vector<N>>(
     x: V::Single,
     y: V::Single,
 ) -> V::Single {
-    v.add(v.flip(x, gradient[0]), v.flip(y, gradient[1]))
+    v.flip(x, gradient[0]) + v.flip(y, gradient[1])
 }
 
 /// fade(t + ½) for t in [−½, ½].
 #[inline(always)]
 fn centred_fade<const N: usize, V: Vector<N>>(v: V, t: V::Single) -> V::Single {
-    let q = v.mul(t, t);
-    let slope = v.sub(v.mul(v.splat(6.0), q), v.splat(5.0));
-    v.add(v.splat(0.5), v.mul(t, v.add(v.splat(1.875), v.mul(q, slope))))
-}
-
-/// a + f (b − a)
-#[inline(always)]
-fn between<const N: usize, V: Vector<N>>(v: V, [a, b]: [V::Single; 2], f: V::Single) -> V::Single {
-    v.add(a, v.mul(f, v.sub(b, a)))
+    let q = t * t;
+    let slope = v.splat(6.0) * q - v.splat(5.0);
+    v.splat(0.5) + t * (v.splat(1.875) + q * slope)
 }
 
 #[cfg(test)]

@@ -36,6 +36,7 @@
 extern crate std;
 
 pub mod actuator;
+pub mod bessel;
 pub mod butterworth;
 pub mod damping;
 pub mod diffuse;
@@ -61,6 +62,7 @@ pub mod simd;
 pub mod stick_slip;
 pub mod tangential;
 pub mod trajectory;
+pub mod vector;
 pub mod vibration_points;
 
 pub use error::DesignError;

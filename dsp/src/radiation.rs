@@ -29,6 +29,7 @@
 //!
 //! A stiff body that is struck also clicks, because it is pushed as a whole ([`click_pa`]).
 
+use crate::vector::{dot, length, sub};
 use core::f64::consts::PI;
 
 /// Density of air at 20 °C, kg/m³.
@@ -82,7 +83,7 @@ impl Surface<'_> {
             let corners = t.map(|i| i as usize);
             let [a, b, c] = corners.map(|i| self.points_m.get(i).copied());
             let (a, b, c) = (a?, b?, c?);
-            let (u, v) = (minus(b, a), minus(c, a));
+            let (u, v) = (sub(b, a), sub(c, a));
             let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
             let middle_m = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0);
             Some(Facet { middle_m, area_m2: area.map(|x| 0.5 * x), corners })
@@ -116,7 +117,7 @@ impl EquivalentSphere {
         let centre_m = sum.map(|x| x / area);
         let mut moments = [[0.0; 3]; 3];
         for facet in surface.facets() {
-            let (da, x) = (length(facet.area_m2), minus(facet.middle_m, centre_m));
+            let (da, x) = (length(facet.area_m2), sub(facet.middle_m, centre_m));
             for (i, row) in moments.iter_mut().enumerate() {
                 (0..3).for_each(|j| row[j] += da * x[i] * x[j] / area);
             }
@@ -142,7 +143,7 @@ impl EquivalentSphere {
         for _ in 0..PASSES {
             let (mut area, mut sum, mut lean) = (0.0, 0.0, [0.0; 3]);
             for (at_m, share) in surface.corners() {
-                let x = minus(at_m, centre_m);
+                let x = sub(at_m, centre_m);
                 let far = length(x);
                 (area, sum) = (area + share, sum + share * far);
                 (0..3).for_each(|i| lean[i] += share * (far - radius_m) * x[i] / far.max(f64::MIN_POSITIVE));
@@ -150,9 +151,9 @@ impl EquivalentSphere {
             radius_m = sum / area;
             (0..3).for_each(|i| centre_m[i] += 3.0 * lean[i] / area);
         }
-        let off = |at_m| (length(minus(at_m, centre_m)) / radius_m - 1.0).abs();
+        let off = |at_m| (length(sub(at_m, centre_m)) / radius_m - 1.0).abs();
         let farthest = surface.corners().fold(0.0_f64, |most, (at_m, _)| most.max(off(at_m)));
-        let within = |facet: Facet| dot(minus(facet.middle_m, centre_m), facet.area_m2) / 3.0;
+        let within = |facet: Facet| dot(sub(facet.middle_m, centre_m), facet.area_m2) / 3.0;
         let volume: f64 = surface.facets().map(within).sum();
         let [roundest, fullest] = BALL;
         if !(farthest <= roundest && volume >= fullest * 4.0 / 3.0 * PI * radius_m * radius_m * radius_m) {
@@ -255,7 +256,7 @@ impl EquivalentSphere {
     }
 
     fn direction(&self, at_m: [f64; 3]) -> [f64; 3] {
-        let x = minus(at_m, self.centre_m);
+        let x = sub(at_m, self.centre_m);
         let d = self.unstretch.map(|row| dot(row, x));
         let size = length(d);
         if size > 0.0 { d.map(|x| x / size) } else { [0.0, 0.0, 1.0] }
@@ -353,16 +354,4 @@ fn inverse_of_root(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         }
     }
     inverse
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    libm::sqrt(dot(a, a))
 }

@@ -21,7 +21,7 @@ mod vector;
 
 pub use fearless_simd;
 pub use set::Set;
-pub(crate) use vector::{Eight, Sixteen, Vector};
+pub(crate) use vector::{Eight, Single, Sixteen, Vector, Word};
 
 /// An instruction set the kernels are compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -104,7 +104,6 @@ fn contact_time_force_and_impulse_follow_hertz() {
         let deepest = (5.0 * ball.mass_kg() * speed * speed / (4.0 * k)).powf(0.4);
         let time = ball.contact_time_s(speed);
         assert!((time / (2.943_275_18 * deepest / speed) - 1.0).abs() < 1e-7, "{speed} m/s: {time} s");
-        assert!((ball.peak_force_n(speed) / (k * deepest.powf(1.5)) - 1.0).abs() < 1e-6);
         assert!((ball.impulse_n_s(speed) - 2.0 * ball.mass_kg() * speed).abs() < 1e-12);
     }
     // Hand figures: 86, 54 and 34 µs at 0.01, 0.1 and 1 m/s; a rubber ball of the same size touches
@@ -112,8 +111,6 @@ fn contact_time_force_and_impulse_follow_hertz() {
     assert!((ball.contact_time_s(0.1) * 1e6 - 54.0).abs() < 2.0, "{}", ball.contact_time_s(0.1));
     let soft = HertzContact::new(&RUBBER, &STEEL, 0.005, 0.000_6).unwrap().contact_time_s(1.0);
     assert!((5e-4..3e-3).contains(&soft), "{soft}");
-    let dull = ball.with_restitution(0.5).unwrap();
-    assert!((dull.impulse_n_s(1.0) / ball.impulse_n_s(1.0) - 0.75).abs() < 1e-12);
 }
 
 #[test]
@@ -132,8 +129,6 @@ fn impossible_contacts_are_refused_by_name() {
     assert_eq!(field(Elastic { young_pa: 1e9, poisson: 0.6 }, 0.01, 0.01), "poisson");
     assert_eq!(field(STEEL, -1.0, 0.01), "radius_m");
     assert_eq!(field(STEEL, 0.01, f64::NAN), "mass_kg");
-    let ball = HertzContact::new(&STEEL, &STEEL, 0.005, 0.004).unwrap();
-    assert_eq!(ball.with_restitution(1.5).unwrap_err().field, "restitution");
 }
 
 fn beta3(t: f64) -> f64 {

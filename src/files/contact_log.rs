@@ -239,6 +239,15 @@ impl ContactLog {
         self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
+    /// The log as [`write`](Self::write) writes it.
+    #[must_use]
+    pub fn to_jsonl(&self) -> String {
+        let mut text = Vec::new();
+        // Memory refuses nothing.
+        let _ = self.write(&mut text);
+        String::from_utf8(text).unwrap_or_default()
+    }
+
     /// Tests whether every event that is felt is felt on one of so many channels: on another it
     /// would be felt nowhere.
     ///
@@ -306,7 +315,36 @@ impl ContactLog {
     }
 }
 
+impl LogHand {
+    /// The engine's own probe, felt by a haptic channel.
+    #[must_use]
+    pub fn felt_by(actuator: u16) -> Self {
+        Self { actuator: Some(actuator), ..Self::default() }
+    }
+}
+
 impl LogLine {
+    /// Lines of a contact on a surface: it begins with the first of its samples, each at its time,
+    /// and ends at `end_s`.
+    #[must_use]
+    pub fn contact(
+        contact: u64,
+        (surface, hand): (&str, LogHand),
+        samples: impl IntoIterator<Item = (f64, ContactSample)>,
+        end_s: f64,
+    ) -> Vec<Self> {
+        let mut begins = Some(LogTouching { surface: surface.to_owned(), importance: None, hand });
+        let line = |(t, sample): (f64, ContactSample)| {
+            let event = match begins.take() {
+                Some(touching) => LogEvent::Begin { contact, touching, sample },
+                None => LogEvent::moved(contact, sample),
+            };
+            Self { t, event }
+        };
+        let end = Self { t: end_s, event: LogEvent::End { contact } };
+        samples.into_iter().map(line).chain([end]).collect()
+    }
+
     /// A line whose keys are checked.
     fn of(line: keys::Line) -> serde_json::Result<Self> {
         let keys = serde_json::Value::Object(line.keys);
@@ -344,11 +382,31 @@ impl LogEvent {
     /// The engine's own probe lands on a surface, felt by a haptic channel.
     #[must_use]
     pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: ContactSample) -> Self {
-        let hand = LogHand { actuator: Some(actuator), ..LogHand::default() };
-        Self::Begin {
-            contact,
-            touching: LogTouching { surface: surface.into(), importance: None, hand },
-            sample,
+        let touching =
+            LogTouching { surface: surface.into(), importance: None, hand: LogHand::felt_by(actuator) };
+        Self::Begin { contact, touching, sample }
+    }
+
+    /// A strike on a body at its first position that loses nothing and that nobody feels.
+    #[must_use]
+    pub fn strike(
+        body: impl Into<String>,
+        speed_m_s: f64,
+        striker: Striker,
+        (mass_kg, radius_m): (f64, f64),
+    ) -> Self {
+        Self::Impact {
+            body: body.into(),
+            other: None,
+            speed_m_s,
+            mass_kg,
+            radius_m,
+            striker,
+            restitution: 1.0,
+            position: 0,
+            at_m: None,
+            direction: None,
+            hand: LogHand::default(),
         }
     }
 

@@ -33,6 +33,29 @@ pub struct ContactBlock<'a> {
     pub cap_n: &'a [f64],
 }
 
+impl ContactBlock<'_> {
+    /// Columns of a trace at each sample: u, v, height_m, normal_force_n, pad_m, pad_velocity_m_s,
+    /// finger_m, contact_force_n, impulse_n_s.
+    pub fn trace(&self) -> impl Iterator<Item = [f64; 9]> {
+        let rows = self.uv.iter().zip(self.contact_samples).zip(self.impulse_n_s);
+        rows.map(|(([u, v], row), impulse_n_s)| {
+            let PadSample { height_m, normal_force_n, pad_m, pad_velocity_m_s, .. } = *row;
+            let PadSample { finger_m, contact_force_n, .. } = *row;
+            [
+                *u,
+                *v,
+                height_m,
+                normal_force_n,
+                pad_m,
+                pad_velocity_m_s,
+                finger_m,
+                contact_force_n,
+                *impulse_n_s,
+            ]
+        })
+    }
+}
+
 /// Memory of a [`ContactBlock`].
 pub(crate) struct ContactRows {
     pub(crate) position_m: [[f64; 2]; MAX_BLOCK],

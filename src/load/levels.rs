@@ -241,17 +241,10 @@ impl Trials {
                 ..ContactSample::default()
             }
         };
-        let mut begin = LogEvent::begin(contact, &entry.name, actuator as u16, sample(0.0));
-        if let LogEvent::Begin { touching, .. } = &mut begin {
-            touching.hand.probe = probe.map(str::to_owned);
-        }
-        self.log.lines.push(LogLine { t: start_s, event: begin });
-        let steps = (STROKE_S * 60.0) as usize;
-        for step in 1..steps {
-            let t = step as f64 / 60.0;
-            self.log.lines.push(LogLine { t: start_s + t, event: LogEvent::moved(contact, sample(t)) });
-        }
-        self.log.lines.push(LogLine { t: start_s + STROKE_S, event: LogEvent::End { contact } });
+        let hand = LogHand { probe: probe.map(str::to_owned), ..LogHand::felt_by(actuator as u16) };
+        let times = (0..(STROKE_S * 60.0) as usize).map(|step| step as f64 / 60.0);
+        let samples = times.map(|t| (start_s + t, sample(t)));
+        self.log.lines.extend(LogLine::contact(contact, (&entry.name, hand), samples, start_s + STROKE_S));
         self.strokes.push(Trial { actuator, bus, start_s });
     }
 
@@ -309,17 +302,6 @@ fn kinds(file: &SceneFile) -> Vec<usize> {
 
 /// The reference strike on a body.
 fn strike(body: &str) -> LogEvent {
-    LogEvent::Impact {
-        body: body.to_owned(),
-        other: None,
-        speed_m_s: STRIKE.speed_m_s,
-        mass_kg: STRIKE.mass_kg,
-        radius_m: STRIKE.radius_m,
-        striker: Striker::Preset("steel".to_owned()),
-        restitution: 1.0,
-        position: 0,
-        at_m: None,
-        direction: None,
-        hand: LogHand::default(),
-    }
+    let steel = Striker::Preset("steel".to_owned());
+    LogEvent::strike(body, STRIKE.speed_m_s, steel, (STRIKE.mass_kg, STRIKE.radius_m))
 }

@@ -12,6 +12,7 @@
 
 use crate::model::bad_value::{BadValue, within};
 use asperity_dsp::limits;
+use asperity_dsp::vector::cross;
 use serde::{Deserialize, Serialize};
 
 /// Reading of a pickup.
@@ -158,8 +159,4 @@ impl RigidMotion {
         let felt = |i: usize| self.acceleration_m_s2[i] - self.gravity_m_s2[i] + inward[i] + across[i];
         (0..3).map(|i| direction[i] * felt(i)).sum()
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -11,6 +11,7 @@
 //! *one* strike leaves. The burst is brought to the engine's rate when the body is added, on the
 //! game thread; on the audio thread it is read and added: no heap, the same bits for any blocks.
 
+use asperity_dsp::bessel::bessel_i0;
 use serde::{Deserialize, Serialize};
 
 /// Longest burst, s.
@@ -87,17 +88,6 @@ fn kernel(x: f64, cutoff: f64, reach: f64) -> f64 {
     let sinc = if angle.abs() < 1e-9 { 1.0 } else { libm::sin(angle) / angle };
     let edge = (1.0 - (x / reach).powi(2)).max(0.0).sqrt();
     cutoff * sinc * bessel_i0(KAISER_BETA * edge) / bessel_i0(KAISER_BETA)
-}
-
-/// Modified Bessel function of the first kind, order 0, by its power series.
-fn bessel_i0(x: f64) -> f64 {
-    let quarter = 0.25 * x * x;
-    let (mut term, mut sum) = (1.0, 1.0);
-    for k in 1..40 {
-        term *= quarter / f64::from(k * k);
-        sum += term;
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -151,13 +151,6 @@ impl HeightMap {
         Ok(self)
     }
 
-    /// Sets the Coulomb friction coefficient.
-    #[must_use]
-    pub fn with_friction(mut self, coefficient: f64) -> Self {
-        self.friction = coefficient;
-        self
-    }
-
     /// The patch the map covers.
     #[must_use]
     pub fn extent(&self) -> Extent {

@@ -40,8 +40,6 @@ pub struct Lattice {
     inverse: [[f64; 2]; 2],
     texel_m: f64,
     longest_m: f64,
-    roughness: f64,
-    friction: f64,
 }
 
 impl Lattice {
@@ -90,15 +88,7 @@ impl Lattice {
             inverse,
             texel_m: (l1 / cell.width as f64).min(l2 / cell.height as f64),
             longest_m: l1.max(l2),
-            roughness: 0.0,
-            friction: 0.0,
         })
-    }
-
-    /// Sets a roughness R (0–1) and a friction coefficient.
-    #[must_use]
-    pub fn with_material(self, roughness: f64, friction: f64) -> Self {
-        Self { roughness, friction, ..self }
     }
 
     /// Height and slope along u and v at a position, for a footprint of 0: the definition.
@@ -282,8 +272,8 @@ impl HeightField for Lattice {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
         out.clear(n);
-        out.roughness[..n].fill(self.roughness);
-        out.friction[..n].fill(self.friction);
+        out.roughness[..n].fill(0.0);
+        out.friction[..n].fill(0.0);
         for i in 0..n {
             (out.height_m[i], out.gradient[i]) = self.height_at(path.position_m[i], path.footprint_m[i]);
         }

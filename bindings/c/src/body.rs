@@ -72,21 +72,11 @@ pub struct asp_body {
     pub strike_gain: f64,
 }
 
-sized!(asp_body, "asp_body", [offset_of!(asp_body, strike_gain)], |struct_size| Self {
-    struct_size,
-    material: material::ASP_MATERIAL_DEFAULT,
-    bus: 0,
-    mode_count: 0,
+sized!(asp_body, [offset_of!(asp_body, strike_gain)], |zeroed| Self {
     gain: 1.0,
-    name: std::ptr::null(),
-    stock: std::ptr::null(),
-    size_m: 0.0,
-    modes: std::ptr::null(),
     impulse_n_s: 1.0,
-    modes_json: std::ptr::null(),
-    table: std::ptr::null(),
-    files: std::ptr::null(),
     strike_gain: f64::NAN,
+    ..zeroed
 });
 
 /// Status of a refusal to add.

@@ -57,17 +57,7 @@ pub struct asp_config {
     pub more: *const c_char,
 }
 
-sized!(asp_config, "asp_config", |struct_size| Self {
-    struct_size,
-    clock: ASP_CLOCK_LIVE,
-    sample_rate_hz: 0.0,
-    seed: 0,
-    haptic_channels: 0,
-    audio_buses: 0,
-    kernel: ASP_KERNEL_BEST,
-    pickup_channels: 0,
-    more: std::ptr::null(),
-});
+sized!(asp_config);
 
 impl asp_config {
     pub(crate) fn is_live(&self) -> Result<bool, Failure> {

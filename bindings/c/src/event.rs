@@ -2,7 +2,7 @@
 //!
 //! Numbers that a game does not know are NAN ("not told"), ids 0, the actuator −1.
 
-use crate::material::{self, ASP_MATERIAL_CUSTOM, ASP_MATERIAL_DEFAULT};
+use crate::material::{self, ASP_MATERIAL_CUSTOM};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use asperity::{
@@ -92,23 +92,11 @@ pub struct asp_event {
 
 const NOT_TOLD: f64 = f64::NAN;
 
-sized!(asp_event, "asp_event", [offset_of!(asp_event, slip_m_s)], |struct_size| Self {
-    struct_size,
-    kind: 0,
-    contact: 0,
-    surface: 0,
-    body: 0,
-    other: 0,
-    holder: 0,
-    probe: 0,
+sized!(asp_event, [offset_of!(asp_event, slip_m_s)], |zeroed| Self {
     actuator: -1,
-    striker: ASP_MATERIAL_DEFAULT,
-    position: 0,
-    reserved: 0,
     uv: [NOT_TOLD; 2],
     velocity_m_s: [NOT_TOLD; 2],
     normal_force_n: NOT_TOLD,
-    closing_m_s: 0.0,
     depth_m: NOT_TOLD,
     at_m: [NOT_TOLD; 3],
     direction: [NOT_TOLD; 3],
@@ -123,6 +111,7 @@ sized!(asp_event, "asp_event", [offset_of!(asp_event, slip_m_s)], |struct_size| 
     striker_density_kg_m3: NOT_TOLD,
     slip_m_s: NOT_TOLD,
     roll_radius_m: NOT_TOLD,
+    ..zeroed
 });
 
 fn told(number: f64) -> Option<f64> {

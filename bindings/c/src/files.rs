@@ -42,12 +42,7 @@ pub struct asp_files {
     pub read: asp_read,
 }
 
-sized!(asp_files, "asp_files", |struct_size| Self {
-    struct_size,
-    reserved: 0,
-    user: std::ptr::null_mut(),
-    read: None,
-});
+sized!(asp_files);
 
 /// Fills files with its size and the disk.
 #[unsafe(no_mangle)]

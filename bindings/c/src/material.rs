@@ -64,37 +64,6 @@ pub const ASP_MATERIAL_CORK: u32 = 26;
 /// Moist soil.
 pub const ASP_MATERIAL_SOIL: u32 = 27;
 
-/// Names in scene files.
-const NAMES: [(u32, &str); 27] = [
-    (ASP_MATERIAL_STEEL, "steel"),
-    (ASP_MATERIAL_IRON, "iron"),
-    (ASP_MATERIAL_ALUMINIUM, "aluminium"),
-    (ASP_MATERIAL_BRASS, "brass"),
-    (ASP_MATERIAL_COPPER, "copper"),
-    (ASP_MATERIAL_GLASS, "glass"),
-    (ASP_MATERIAL_CERAMIC, "ceramic"),
-    (ASP_MATERIAL_STONE, "stone"),
-    (ASP_MATERIAL_CONCRETE, "concrete"),
-    (ASP_MATERIAL_BRICK, "brick"),
-    (ASP_MATERIAL_WOOD, "wood"),
-    (ASP_MATERIAL_SOFTWOOD, "softwood"),
-    (ASP_MATERIAL_PLA, "pla"),
-    (ASP_MATERIAL_PLASTIC, "plastic"),
-    (ASP_MATERIAL_ACRYLIC, "acrylic"),
-    (ASP_MATERIAL_RUBBER, "rubber"),
-    (ASP_MATERIAL_NAIL, "nail"),
-    (ASP_MATERIAL_CLOTH, "cloth"),
-    (ASP_MATERIAL_DENIM, "denim"),
-    (ASP_MATERIAL_LEATHER, "leather"),
-    (ASP_MATERIAL_SKIN, "skin"),
-    (ASP_MATERIAL_FOAM, "foam"),
-    (ASP_MATERIAL_CARPET, "carpet"),
-    (ASP_MATERIAL_CARDBOARD, "cardboard"),
-    (ASP_MATERIAL_PAPER, "paper"),
-    (ASP_MATERIAL_CORK, "cork"),
-    (ASP_MATERIAL_SOIL, "soil"),
-];
-
 /// A striker whose elastic constants stand in the event.
 pub const ASP_MATERIAL_CUSTOM: u32 = 255;
 
@@ -103,8 +72,8 @@ pub(crate) fn name(number: u32) -> Result<Option<&'static str>, Failure> {
     if number == ASP_MATERIAL_DEFAULT {
         return Ok(None);
     }
-    let found = NAMES.iter().find(|(known, _)| *known == number);
-    found.map(|(_, name)| Some(*name)).ok_or_else(|| {
+    // The engine's presets are numbered in their order, from 1.
+    Material::PRESETS.get(number as usize - 1).map(|preset| Some(preset.name)).ok_or_else(|| {
         let right = format!(
             "must be ASP_MATERIAL_DEFAULT to ASP_MATERIAL_NAIL, or what asp_material gives: {}",
             Material::names()
@@ -123,8 +92,8 @@ pub(crate) fn material(number: u32) -> Result<Option<Material>, Failure> {
 pub unsafe extern "C" fn asp_material(name: *const c_char, number: *mut u32) -> i32 {
     enter(|| {
         let (name, number) = (text::needed(name, "name")?, out(number, "number")?);
-        let found = NAMES.iter().find(|(_, known)| *known == name);
-        *number = found.map(|(number, _)| *number).ok_or_else(|| {
+        let found = Material::PRESETS.iter().position(|preset| preset.name == name);
+        *number = found.map(|index| index as u32 + 1).ok_or_else(|| {
             let known = Material::names();
             Failure::new(ASP_UNKNOWN, format!("material: \"{name}\" is unknown; must be one of: {known}"))
         })?;
@@ -138,11 +107,18 @@ mod tests {
 
     #[test]
     fn every_preset_of_the_engine_has_a_number_and_every_number_a_preset() {
-        let named: Vec<&str> = NAMES.iter().map(|(_, name)| *name).collect();
+        let constants = include_str!("material.rs").lines().filter_map(|line| {
+            let (name, number) = line.strip_prefix("pub const ASP_MATERIAL_")?.split_once(": u32 = ")?;
+            Some((name.to_lowercase(), number.trim_end_matches(';').parse().unwrap()))
+        });
+        let constants: Vec<(String, u32)> = constants
+            .filter(|(_, number)| ![ASP_MATERIAL_DEFAULT, ASP_MATERIAL_CUSTOM].contains(number))
+            .collect();
+        let named: Vec<&str> = constants.iter().map(|(name, _)| name.as_str()).collect();
         let presets: Vec<&str> = Material::PRESETS.iter().map(|preset| preset.name).collect();
         assert_eq!(named, presets);
-        for (number, name) in NAMES {
-            assert_eq!(material(number).unwrap(), Material::by_name(name));
+        for (name, number) in &constants {
+            assert_eq!(material(*number).unwrap(), Material::by_name(name));
         }
         assert_eq!(material(ASP_MATERIAL_DEFAULT).unwrap(), None);
         assert!(material(254).unwrap_err().sentence.contains("254 is unknown"));

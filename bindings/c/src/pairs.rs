@@ -45,17 +45,7 @@ pub struct asp_collider {
     pub radius_m: f64,
 }
 
-sized!(asp_collider, "asp_collider", |struct_size| Self {
-    struct_size,
-    material: material::ASP_MATERIAL_DEFAULT,
-    form: ASP_FORM_FLAT,
-    actuator: -1,
-    body: 0,
-    surface: 0,
-    surface_m: [1.0; 2],
-    mass_kg: f64::INFINITY,
-    radius_m: 0.0,
-});
+sized!(asp_collider, |zeroed| Self { actuator: -1, surface_m: [1.0; 2], mass_kg: f64::INFINITY, ..zeroed });
 
 /// Place and motion of a collider after a step.
 #[repr(C)]

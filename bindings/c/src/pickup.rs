@@ -41,14 +41,11 @@ pub struct asp_pickup {
     pub factor: f64,
 }
 
-sized!(asp_pickup, "asp_pickup", |struct_size| Self {
-    struct_size,
-    channel: 0,
-    quantity: ASP_PICKUP_ACCELERATION,
-    reserved: 0,
+sized!(asp_pickup, |zeroed| Self {
     at_m: [f64::NAN; 3],
     direction: [f64::NAN; 3],
     factor: f64::NAN,
+    ..zeroed
 });
 
 /// Motion of a body as a whole at an instant, in its own axes.

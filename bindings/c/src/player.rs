@@ -33,16 +33,7 @@ pub struct asp_player_config {
     pub channels: *const c_char,
 }
 
-sized!(asp_player_config, "asp_player_config", |struct_size| Self {
-    struct_size,
-    silent: 0,
-    block_frames: 0,
-    reserved: 0,
-    host: std::ptr::null(),
-    device: std::ptr::null(),
-    haptic_device: std::ptr::null(),
-    channels: std::ptr::null(),
-});
+sized!(asp_player_config);
 
 /// Report of a player; `asp_player_report_init` fills in the size.
 #[repr(C)]
@@ -66,16 +57,7 @@ pub struct asp_player_report {
     pub peak_load: f64,
 }
 
-sized!(asp_player_report, "asp_player_report", |struct_size| Self {
-    struct_size,
-    silent: 0,
-    callbacks: 0,
-    underruns: 0,
-    rebuilt: 0,
-    latency_s: 0.0,
-    mean_load: 0.0,
-    peak_load: 0.0,
-});
+sized!(asp_player_report);
 
 /// A config whose texts have been read.
 struct Wanted<'a> {

@@ -49,17 +49,13 @@ pub struct asp_port_config {
     pub reserved: u32,
 }
 
-sized!(asp_port_config, "asp_port_config", |struct_size| Self {
-    struct_size,
+sized!(asp_port_config, |zeroed| Self {
     kind: ASP_PORT_PCM,
-    feed: ASP_FEED_HAPTIC,
-    index: 0,
     rate_hz: 100.0,
     holds_s: 0.1,
     low_hz: 55.0,
     high_hz: 200.0,
-    strongest: 0,
-    reserved: 0,
+    ..zeroed
 });
 
 /// A vibration between two ticks.

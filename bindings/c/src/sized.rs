@@ -21,7 +21,9 @@ pub(crate) unsafe trait Sized32: Copy {
     const SHIPPED: &'static [u32];
 
     /// Its size and its defaults.
-    fn initial() -> Self;
+    fn initial() -> Self {
+        zeroed()
+    }
 }
 
 fn refused<T: Sized32>(size: u32) -> Failure {
@@ -92,18 +94,30 @@ pub(crate) fn init<T: Sized32>(to: *mut T) {
     }
 }
 
-/// Says how a struct of the header begins; the sizes that it had before stand in brackets.
+/// A struct of zeros and null pointers that knows its size.
+pub(crate) fn zeroed<T: Sized32>() -> T {
+    // SAFETY: every bit pattern is a value, and the first field is the u32 size.
+    unsafe {
+        let mut zeroed: T = std::mem::zeroed();
+        (&raw mut zeroed).cast::<u32>().write(size_of::<T>() as u32);
+        zeroed
+    }
+}
+
+/// Says how a struct of the header begins, if not with zeros; the sizes that it had before stand in
+/// brackets.
 macro_rules! sized {
-    ($type:ty, $name:literal, $([$($older:expr),*],)? |$size:ident| $initial:expr) => {
+    ($type:ident $(, [$($older:expr),*])? $(, |$zeroed:ident| $initial:expr)?) => {
         // SAFETY: `repr(C)`, the size comes first, and all fields are numbers and pointers.
         unsafe impl $crate::sized::Sized32 for $type {
-            const NAME: &'static str = $name;
+            const NAME: &'static str = stringify!($type);
             const SHIPPED: &'static [u32] = &[$($($older as u32,)*)? size_of::<Self>() as u32];
-
-            fn initial() -> Self {
-                let $size = size_of::<Self>() as u32;
-                $initial
-            }
+            $(
+                fn initial() -> Self {
+                    let $zeroed = $crate::sized::zeroed::<Self>();
+                    $initial
+                }
+            )?
         }
     };
 }

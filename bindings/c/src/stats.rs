@@ -78,44 +78,7 @@ pub struct asp_stats {
     pub given_way: u64,
 }
 
-sized!(
-    asp_stats,
-    "asp_stats",
-    [offset_of!(asp_stats, limiter_db), offset_of!(asp_stats, held)],
-    |struct_size| Self {
-        struct_size,
-        load: 0.0,
-        position: 0,
-        events: 0,
-        impacts: 0,
-        shortened: 0,
-        shortened_collisions: 0,
-        micro_collisions: 0,
-        blows: 0,
-        dropped: 0,
-        superseded: 0,
-        orphaned: 0,
-        stolen: 0,
-        debounced: 0,
-        lapsed: 0,
-        jumps: 0,
-        unpressed: 0,
-        refused: 0,
-        quarantined: 0,
-        late: 0,
-        clock_jumps: 0,
-        clock_paces: 0,
-        ahead: 0,
-        shed: 0,
-        contacts: 0,
-        limiter_db: 0,
-        rubs_crowded_out: 0,
-        held: 0,
-        stale: 0,
-        too_soon: 0,
-        given_way: 0,
-    }
-);
+sized!(asp_stats, [offset_of!(asp_stats, limiter_db), offset_of!(asp_stats, held)]);
 
 impl asp_stats {
     fn of(stats: &asperity::Stats) -> Self {

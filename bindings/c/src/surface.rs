@@ -77,24 +77,17 @@ pub struct asp_surface {
     pub files: *const asp_files,
 }
 
-sized!(asp_surface, "asp_surface", |struct_size| Self {
-    struct_size,
-    wrap: ASP_WRAP_REPEAT,
-    body: 0,
-    name: std::ptr::null(),
+sized!(asp_surface, |zeroed| Self {
     width_m: f64::NAN,
     height_m: f64::NAN,
     relief_m: f64::NAN,
     heights: image::NONE,
     roughness_map: image::NONE,
-    heights_channel: ASP_CHANNEL_LUMA,
-    roughness_channel: ASP_CHANNEL_LUMA,
     roughness: f64::NAN,
     micro_relief_m: f64::NAN,
     friction: f64::NAN,
     compliance_m_n: f64::NAN,
-    table: std::ptr::null(),
-    files: std::ptr::null(),
+    ..zeroed
 });
 
 /// Names of what lies in memory, as the table calls it.

@@ -25,8 +25,7 @@ impl AsperityWorld {
     #[func]
     fn record_stop(&mut self, path: GString) -> bool {
         self.tried("record_stop", |running| {
-            let mut lines = Vec::new();
-            running.scene.stop_recording().write(&mut lines).map_err(|error| error.to_string())?;
+            let lines = running.scene.stop_recording().to_jsonl().into_bytes();
             let file = FileAccess::open(&path, ModeFlags::WRITE);
             let wrong =
                 || format!("{path}: {:?}; give a path that can be written", FileAccess::get_open_error());

@@ -210,10 +210,9 @@ impl Microphones {
         let Some(heard) = inner.all.get_mut(world) else {
             return Err(refused(format!("world: {world} is unknown")));
         };
-        let mut text = Vec::new();
-        heard.engine.scene.stop_recording().write(&mut text)?;
+        let text = heard.engine.scene.stop_recording().to_jsonl();
         heard.engine.scene.start_recording(&heard.engine.names);
-        String::from_utf8(text).map_err(refused)
+        Ok(text)
     }
 
     /// Statistics of the engine of a world, as JSON.

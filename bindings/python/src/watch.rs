@@ -88,19 +88,8 @@ impl Tap for Watch {
 }
 
 fn trace(rows: &mut Rows<9>, block: &ContactBlock<'_>) {
-    for (index, row) in block.contact_samples.iter().enumerate() {
-        let values = [
-            block.uv[index][0],
-            block.uv[index][1],
-            row.height_m,
-            row.normal_force_n,
-            row.pad_m,
-            row.pad_velocity_m_s,
-            row.finger_m,
-            row.contact_force_n,
-            block.impulse_n_s[index],
-        ];
-        rows.add(block.first_sample + index as u64, block.contact.0, values);
+    for (sample, values) in (block.first_sample..).zip(block.trace()) {
+        rows.add(sample, block.contact.0, values);
     }
 }
 

@@ -17,9 +17,7 @@ pub extern "C" fn asp_record_start() -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_record_stop() -> u32 {
     done(session::with(|session| {
-        let mut lines = Vec::new();
-        session.scene.stop_recording().write(&mut lines).map_err(|error| error.to_string())?;
-        answer(lines);
+        answer(session.scene.stop_recording().to_jsonl().into_bytes());
         Ok(())
     }))
 }

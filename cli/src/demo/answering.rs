@@ -4,8 +4,8 @@
 //! plate with edges that rest on supports.
 
 use super::demo_scene::DemoScene;
-use super::strokes::{Finger, log};
-use asperity::files::contact_log::{ContactSample, LogEvent, LogHand, LogLine, Striker};
+use super::strokes::{Finger, log, resting, strike};
+use asperity::files::contact_log::{LogLine, Striker};
 use asperity::{ModalModel, Mode, ModeShapes, ShapeUnit};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -196,19 +196,18 @@ fn lines() -> Vec<LogLine> {
         let contact = 10 * number as u64;
         let top = format!("{body}-top");
         // Struck under a finger, and free.
-        lines.extend(rest(contact + 1, &top, finger, t, t + 0.7));
+        lines.extend(resting(contact + 1, &top, finger, 2.0, [t, t + 0.7]));
         lines.push(mallet(t + 0.15, body, size_m, places[0]));
         lines.push(mallet(t + 0.9, body, size_m, places[0]));
         t += 1.7;
         // Touched while it rings, and let go.
         lines.push(mallet(t, body, size_m, places[0]));
-        lines.extend(rest(contact + 2, &top, finger, t + 0.4, t + 0.55));
+        lines.extend(resting(contact + 2, &top, finger, 2.0, [t + 0.4, t + 0.55]));
         t += 1.2;
         let bow = format!("{body}-bow");
         let bow = Finger {
             contact: contact + 3,
             surface: &bow,
-            actuator: 0,
             extent_m: [BOW_M, 0.03],
             start_s: t,
             normal_force_n: if number == 0 { 2.5 } else { 4.0 },
@@ -226,42 +225,8 @@ fn lines() -> Vec<LogLine> {
 
 /// A wooden mallet falls on a place, told as shares of the sides.
 fn mallet(t: f64, body: &str, size_m: [f64; 3], [x, y]: [f64; 2]) -> LogLine {
-    let event = LogEvent::Impact {
-        body: body.to_owned(),
-        other: None,
-        speed_m_s: 0.8,
-        mass_kg: 0.012,
-        radius_m: 0.01,
-        striker: Striker::Preset("wood".to_owned()),
-        restitution: 0.5,
-        position: 0,
-        at_m: Some([x * size_m[0], y * size_m[1], 0.0]),
-        direction: None,
-        hand: LogHand::default(),
-    };
-    LogLine { t: (t * 1e4).round() / 1e4, event }
-}
-
-/// A finger that lies at a place and is lifted again.
-fn rest(contact: u64, surface: &str, uv: [f64; 2], from_s: f64, to_s: f64) -> Vec<LogLine> {
-    let reports = ((to_s - from_s) * 60.0) as u32;
-    let mut lines: Vec<LogLine> = (0..reports)
-        .map(|step| {
-            let sample = ContactSample {
-                uv,
-                velocity_m_s: Some([0.0; 2]),
-                normal_force_n: 2.0,
-                ..ContactSample::default()
-            };
-            let event = match step {
-                0 => LogEvent::begin(contact, surface.to_owned(), 0, sample),
-                _ => LogEvent::moved(contact, sample),
-            };
-            LogLine { t: ((from_s + f64::from(step) / 60.0) * 1e4).round() / 1e4, event }
-        })
-        .collect();
-    lines.push(LogLine { t: (to_s * 1e4).round() / 1e4, event: LogEvent::End { contact } });
-    lines
+    let at_m = [x * size_m[0], y * size_m[1], 0.0];
+    strike(t, (body, Some(at_m)), 0.8, Striker::Preset("wood".to_owned()), (0.012, 0.01))
 }
 
 #[cfg(test)]

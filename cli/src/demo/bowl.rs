@@ -2,10 +2,11 @@
 //! modes` and struck.
 
 use super::demo_scene::DemoScene;
-use super::strokes::log;
+use super::strokes::{log, resting, strike};
+use crate::arguments::plain;
 use crate::error::CliError;
 use crate::modes;
-use asperity::files::contact_log::{ContactSample, LogEvent, LogHand, LogLine, Striker};
+use asperity::files::contact_log::{LogLine, Striker};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write;
 use std::path::Path;
@@ -56,7 +57,7 @@ pub fn solve(folder: &Path) -> Result<modes::Report, CliError> {
         max_modes: Some(MODES_WANTED),
         shapes_glb: true,
         plot: Some(folder.join(PICTURE)),
-        ..modes::Options::plain(folder.join(MESH), folder.join(MODES))
+        ..plain(&folder.join(MESH), &folder.join(MODES))?
     };
     modes::make(&options, &mut |_| ())
 }
@@ -140,47 +141,13 @@ fn lines() -> Vec<LogLine> {
         (3.7, outside(rim, FRAC_PI_2)),
     ];
     let mut lines: Vec<LogLine> = places.into_iter().map(|(t, at_m)| stick(t, at_m)).collect();
-    lines.extend(finger(3.5, 4.2));
+    lines.extend(resting(1, "rim", [0.5, 0.8], 1.5, [3.5, 4.2]));
     lines.sort_by(|a, b| a.t.total_cmp(&b.t));
     lines
 }
 
 /// A wooden stick falls on a place.
 fn stick(t: f64, at_m: [f64; 3]) -> LogLine {
-    let event = LogEvent::Impact {
-        body: "bowl".to_owned(),
-        other: None,
-        speed_m_s: 0.8,
-        mass_kg: 0.01,
-        radius_m: 0.006,
-        striker: Striker::Preset("wood".to_owned()),
-        restitution: 0.5,
-        position: 0,
-        at_m: Some(at_m.map(|x| (x * 1e5).round() / 1e5)),
-        direction: None,
-        hand: LogHand::default(),
-    };
-    LogLine { t, event }
-}
-
-/// A finger that lies on the rim.
-fn finger(from_s: f64, to_s: f64) -> Vec<LogLine> {
-    let sample = ContactSample {
-        uv: [0.5, 0.8],
-        velocity_m_s: Some([0.0; 2]),
-        normal_force_n: 1.5,
-        ..ContactSample::default()
-    };
-    let reports = ((to_s - from_s) * 60.0) as u32;
-    let mut lines: Vec<LogLine> = (0..reports)
-        .map(|step| LogLine {
-            t: ((from_s + f64::from(step) / 60.0) * 1e4).round() / 1e4,
-            event: match step {
-                0 => LogEvent::begin(1, "rim".to_owned(), 0, sample),
-                _ => LogEvent::moved(1, sample),
-            },
-        })
-        .collect();
-    lines.push(LogLine { t: to_s, event: LogEvent::End { contact: 1 } });
-    lines
+    let at_m = at_m.map(|x| (x * 1e5).round() / 1e5);
+    strike(t, ("bowl", Some(at_m)), 0.8, Striker::Preset("wood".to_owned()), (0.01, 0.006))
 }

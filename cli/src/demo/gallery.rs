@@ -30,7 +30,6 @@ fn there_and_back(contact: u64, surface: &'static str, start_s: f64, speeds_m_s:
     let finger = Finger {
         contact,
         surface,
-        actuator: 0,
         extent_m: [SIDE_M; 2],
         start_s,
         normal_force_n: 0.7,
@@ -114,7 +113,6 @@ fn sand() -> DemoScene {
     let finger = Finger {
         contact: 1,
         surface: "box",
-        actuator: 0,
         extent_m: [BOX_M; 2],
         start_s: 0.15,
         normal_force_n: 3.0,

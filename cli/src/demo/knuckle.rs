@@ -1,8 +1,8 @@
 //! A knuckle that knocks: on what rings, and on what hardly does.
 
 use super::demo_scene::DemoScene;
-use super::scenes::{LEAD_S, strike};
-use super::strokes::log;
+use super::scenes::LEAD_S;
+use super::strokes::{log, strike};
 use asperity::Material;
 
 /// A thing that is knocked on.
@@ -56,8 +56,7 @@ pub fn scene() -> DemoScene {
              strike_gain = {strike_gain:?}\nvariation = 0.5\n\n"
         );
         for _ in 0..KNOCKS.0 {
-            let at = (t * 1e4f64).round() / 1e4;
-            lines.push(strike(at, name, SPEED_M_S, knuckle.into(), (mass_kg, RADIUS_M)));
+            lines.push(strike(t, (name, None), SPEED_M_S, knuckle, (mass_kg, RADIUS_M)));
             t += KNOCKS.1;
         }
         t += 0.5;

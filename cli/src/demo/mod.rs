@@ -17,12 +17,12 @@ pub mod scenes;
 pub mod strokes;
 mod touchers;
 
+use crate::arguments::plain;
 use crate::error::CliError;
 use crate::fit;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::progress::Progress;
 use crate::render;
-use asperity::Preset;
 use clap::Args;
 use demo_scene::DemoScene;
 use std::path::{Path, PathBuf};
@@ -89,30 +89,14 @@ fn fit_tile(folder: &Path) -> Result<fit::Report, CliError> {
         plot: Some(folder.join("tile.fit.svg")),
         resynthesis: Some(folder.join("tile.resynthesis.wav")),
         max_modes: FIT_MODES,
-        ..fit::Options::plain(folder.join("tile_strike.wav"), folder.join(TILE_MODES))
+        ..plain(&folder.join("tile_strike.wav"), &folder.join(TILE_MODES))?
     })
 }
 
 fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
     loudness::level(&folder.join(format!("{name}.toml")))?;
-    render::render(&render::Options {
-        scene: folder.join(format!("{name}.toml")),
-        output: folder.join(name),
-        rate: None,
-        block: 256,
-        seed: None,
-        preset: Preset::Default,
-        integrator: None,
-        path: None,
-        kernel: None,
-        threads: 1,
-        trace: false,
-        force: false,
-        force_rate: 1000.0,
-        plot: true,
-        port: None,
-        json: false,
-    })
+    let (scene, stem) = (folder.join(format!("{name}.toml")), folder.join(name));
+    render::render(&render::Options { plot: true, ..plain(&scene, &stem)? })
 }
 
 /// Scenes, logs, maps and modes.
@@ -123,10 +107,8 @@ fn write_inputs(folder: &Path, scenes: &[DemoScene]) -> Result<(), CliError> {
     write("bar.modes.json", scenes::bar_modes().to_json().as_bytes())?;
     write("tile_strike.wav", TILE_STRIKE)?;
     for scene in scenes {
-        let mut log = Vec::new();
-        scene.log.write(&mut log).map_err(|error| CliError::write(&folder.join(scene.name), &error))?;
         write(&format!("{}.toml", scene.name), scene.toml.as_bytes())?;
-        write(&format!("{}.jsonl", scene.name), &log)?;
+        write(&format!("{}.jsonl", scene.name), scene.log.to_jsonl().as_bytes())?;
         for (name, bytes) in &scene.assets {
             write(name, bytes)?;
         }

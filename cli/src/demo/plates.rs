@@ -4,7 +4,7 @@
 //! wavelengths and profiles are ours. Two plates are flat and differ only in the roughness map;
 //! four have relief.
 
-use std::f64::consts::PI;
+use asperity_evidence::plates;
 
 /// Width and height of a plate's maps, m.
 pub const SIDE_M: f64 = 0.14;
@@ -14,13 +14,7 @@ pub const RELIEF_M: f64 = 0.004;
 const DISPLACEMENT_PX: usize = 1024;
 /// Pixels a side of a roughness map.
 const ROUGHNESS_PX: usize = 256;
-/// R of the glossy half and of the matte half.
-const SHINY: f64 = 0.1;
-const MATTE: f64 = 0.9;
-/// R of the plates with relief: printed PLA, as the table of materials has it.
-const PLASTIC: f64 = 0.5;
-
-/// A plate: names, what to notice, and its two maps as functions of the place in metres.
+/// A plate: names, and what to notice.
 #[derive(Debug, Clone, Copy)]
 pub struct Plate {
     /// File stem.
@@ -31,8 +25,6 @@ pub struct Plate {
     pub notice: &'static str,
     /// Pad displacement at sample value 1 of the haptic file, m.
     pub full_scale_m: f64,
-    height_m: fn(f64, f64) -> f64,
-    roughness: fn(f64, f64) -> f64,
 }
 
 /// The six, in the order of the paper's figure.
@@ -43,48 +35,30 @@ pub const PLATES: [Plate; 6] = [
         notice: "No relief at all, only the roughness map: the first half hisses and tingles, the second half is \
                  calm. On the way back the order is reversed.",
         full_scale_m: 3e-4,
-        height_m: |_, _| 0.0,
-        roughness: |x, _| if x < SIDE_M / 2.0 { MATTE } else { SHINY },
     },
     Plate {
         name: "shiny-matte",
         title: "Shiny, then matte",
         notice: "The mirror image: only where the finger is tells the two apart.",
         full_scale_m: 3e-4,
-        height_m: |_, _| 0.0,
-        roughness: |x, _| if x < SIDE_M / 2.0 { SHINY } else { MATTE },
     },
     Plate {
         name: "ridge",
         title: "A single ridge",
         notice: "One soft bump of 4 mm in the middle of a smooth plate, crossed once slowly and once fast.",
         full_scale_m: 0.002,
-        height_m: |x, _| {
-            let across = (x - SIDE_M / 2.0) / 0.009;
-            if across.abs() < 1.0 { RELIEF_M * (0.5 + 0.5 * (PI * across).cos()) } else { 0.0 }
-        },
-        roughness: |_, _| PLASTIC,
     },
     Plate {
         name: "bumps",
         title: "Bumps",
         notice: "Round bumps of 1 mm on a 7 mm grid: rhythm rises with the speed of the finger.",
         full_scale_m: 0.001,
-        height_m: |x, y| {
-            let pitch = 0.007;
-            let (u, v) = ((x / pitch).fract() - 0.5, (y / pitch).fract() - 0.5);
-            let radius = u.hypot(v) / 0.45;
-            if radius < 1.0 { 0.001 * (0.5 + 0.5 * (PI * radius).cos()) } else { 0.0 }
-        },
-        roughness: |_, _| PLASTIC,
     },
     Plate {
         name: "sine",
         title: "Sine wave",
         notice: "1 mm waves of 7 mm length. The lowest line of the haptic spectrogram is speed over wavelength.",
         full_scale_m: 0.001,
-        height_m: |x, _| 0.0005 * (1.0 - (2.0 * PI * x / 0.007).cos()),
-        roughness: |_, _| PLASTIC,
     },
     Plate {
         name: "sawtooth",
@@ -92,12 +66,6 @@ pub const PLATES: [Plate; 6] = [
         notice: "1 mm teeth, 7 mm apart: the finger falls off each one, and each fall is a click. Against the \
                  teeth, on the way back, it climbs them instead.",
         full_scale_m: 0.001,
-        height_m: |x, _| {
-            let phase = (x / 0.007).fract();
-            let fall = 0.06;
-            0.001 * if phase < 1.0 - fall { phase / (1.0 - fall) } else { (1.0 - phase) / fall }
-        },
-        roughness: |_, _| PLASTIC,
     },
 ];
 
@@ -105,14 +73,16 @@ impl Plate {
     /// The 16-bit displacement map: pixels a side and grey values, top row first.
     #[must_use]
     pub fn displacement(&self) -> (usize, Vec<u16>) {
-        let value = |x, y| ((self.height_m)(x, y) / RELIEF_M * 65_535.0).round().clamp(0.0, 65_535.0) as u16;
+        let value = |x, y| {
+            (plates::height_m(self.name, x, y) / RELIEF_M * 65_535.0).round().clamp(0.0, 65_535.0) as u16
+        };
         (DISPLACEMENT_PX, raster(DISPLACEMENT_PX, value))
     }
 
     /// The 8-bit roughness map.
     #[must_use]
     pub fn roughness(&self) -> (usize, Vec<u8>) {
-        let value = |x, y| ((self.roughness)(x, y) * 255.0).round().clamp(0.0, 255.0) as u8;
+        let value = |x, _| (plates::roughness(self.name, x) * 255.0).round().clamp(0.0, 255.0) as u8;
         (ROUGHNESS_PX, raster(ROUGHNESS_PX, value))
     }
 }

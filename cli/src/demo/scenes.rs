@@ -2,8 +2,8 @@
 
 use super::demo_scene::DemoScene;
 use super::plates::{PLATES, Plate, RELIEF_M, SIDE_M};
-use super::strokes::{Finger, log};
-use asperity::files::contact_log::{LogEvent, LogHand, LogLine, Striker};
+use super::strokes::{Finger, log, strike};
+use asperity::files::contact_log::Striker;
 use asperity::{ModalModel, Mode};
 use asperity_plot::pixels;
 
@@ -33,7 +33,6 @@ pub fn plate_scene(plate: &Plate) -> DemoScene {
     let finger = Finger {
         contact: 1,
         surface: "plate",
-        actuator: 0,
         extent_m: [SIDE_M; 2],
         start_s: LEAD_S,
         normal_force_n: 0.6,
@@ -91,76 +90,27 @@ const PLATE_GAIN: f64 = 5.0;
 #[must_use]
 pub fn plate_modes() -> ModalModel {
     const LAMBDA2: [f64; 9] = [5.25, 9.08, 12.2, 20.5, 21.5, 33.1, 35.3, 38.6, 53.0];
-    let modes = LAMBDA2
-        .iter()
-        .enumerate()
-        .map(|(index, lambda2)| {
-            let frequency_hz = 430.0 * lambda2 / LAMBDA2[0];
-            Mode {
-                frequency_hz,
-                decay_per_s: 25.0 + 0.03 * frequency_hz,
-                amplitude: 0.3 / (1.0 + 0.35 * index as f64),
-                phase_rad: 0.0,
-            }
-        })
-        .collect();
-    ModalModel {
-        source: "free circular plate, chosen damping".to_owned(),
-        impulse_n_s: 0.01,
-        modes,
-        ..ModalModel::silent()
-    }
+    let hz = LAMBDA2.map(|lambda2| 430.0 * lambda2 / LAMBDA2[0]);
+    free("free circular plate, chosen damping", &hz, |hz| 25.0 + 0.03 * hz, 0.35)
 }
 
 /// Modes of a free steel bar (Euler–Bernoulli, f ∝ (2n+1)²), as a glockenspiel's.
 #[must_use]
 pub fn bar_modes() -> ModalModel {
-    const RATIO: [f64; 6] = [1.0, 2.756, 5.404, 8.933, 13.34, 18.64];
-    let modes = RATIO
-        .iter()
-        .enumerate()
-        .map(|(index, ratio)| {
-            let frequency_hz = 784.0 * ratio;
-            Mode {
-                frequency_hz,
-                decay_per_s: 3.0 + 2.5e-7 * frequency_hz * frequency_hz,
-                amplitude: 0.3 / (1.0 + index as f64),
-                phase_rad: 0.0,
-            }
-        })
-        .collect();
-    ModalModel {
-        source: "free bar, chosen damping".to_owned(),
-        impulse_n_s: 0.01,
-        modes,
-        ..ModalModel::silent()
-    }
+    let hz = [1.0, 2.756, 5.404, 8.933, 13.34, 18.64].map(|ratio| 784.0 * ratio);
+    free("free bar, chosen damping", &hz, |hz| 3.0 + 2.5e-7 * hz * hz, 1.0)
 }
 
-/// An impact on a body by something of a material, with its mass and radius, kg and m.
-pub fn strike(
-    t: f64,
-    body: &str,
-    speed_m_s: f64,
-    striker: Striker,
-    (mass_kg, radius_m): (f64, f64),
-) -> LogLine {
-    LogLine {
-        t,
-        event: LogEvent::Impact {
-            body: body.to_owned(),
-            other: None,
-            speed_m_s,
-            mass_kg,
-            radius_m,
-            striker,
-            restitution: 0.5,
-            position: 0,
-            at_m: None,
-            direction: None,
-            hand: LogHand::default(),
-        },
-    }
+/// A free body of these frequencies; amplitudes fall by `fall` from mode to mode.
+fn free(source: &str, hz: &[f64], decay_per_s: fn(f64) -> f64, fall: f64) -> ModalModel {
+    let mode = |(index, &frequency_hz): (usize, &f64)| Mode {
+        frequency_hz,
+        decay_per_s: decay_per_s(frequency_hz),
+        amplitude: 0.3 / (1.0 + fall * index as f64),
+        phase_rad: 0.0,
+    };
+    let modes = hz.iter().enumerate().map(mode).collect();
+    ModalModel { source: source.to_owned(), impulse_n_s: 0.01, modes, ..ModalModel::silent() }
 }
 
 /// A tile fitted from a recording and a steel bar, struck by hard and soft things.
@@ -171,8 +121,7 @@ fn struck() -> DemoScene {
     for body in ["tile", "bar"] {
         for striker in ["steel", "wood", "rubber"] {
             for speed_m_s in [0.3, 0.6, 1.2] {
-                let striker = Striker::Preset(striker.to_owned());
-                lines.push(strike((t * 1e4f64).round() / 1e4, body, speed_m_s, striker, BALL));
+                lines.push(strike(t, (body, None), speed_m_s, Striker::Preset(striker.to_owned()), BALL));
                 t += 0.28;
             }
             t += 0.2;
@@ -210,7 +159,6 @@ fn scraped() -> DemoScene {
     let finger = Finger {
         contact: 1,
         surface: "ribs",
-        actuator: 0,
         extent_m: [LENGTH_M, WIDTH_M],
         start_s: LEAD_S,
         normal_force_n: 0.8,

@@ -5,7 +5,8 @@
 //! at 9 Hz, and presses with a force that wanders by a few percent. Speeds and forces are those of
 //! people exploring textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
 
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
+use crate::scene_log;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine, Striker};
 use std::f64::consts::PI;
 
 /// Events a second.
@@ -27,8 +28,6 @@ pub struct Finger<'a> {
     pub contact: u64,
     /// Surface touched.
     pub surface: &'a str,
-    /// Haptic channel.
-    pub actuator: u16,
     /// Extent of the surface, m.
     pub extent_m: [f64; 2],
     /// Time of landing, s.
@@ -45,7 +44,7 @@ impl Finger<'_> {
     /// The events from landing to lifting off.
     #[must_use]
     pub fn lines(&self) -> Vec<LogLine> {
-        let mut lines = Vec::new();
+        let mut samples = Vec::new();
         let mut t = self.start_s;
         let mut from = self.from_m;
         for &(to, speed_m_s) in &self.strokes {
@@ -53,33 +52,25 @@ impl Finger<'_> {
             let end = t + stroke.duration_s() + PAUSE_S;
             let start = t;
             while t < end {
-                let event = self.event(lines.is_empty(), t, stroke.at(t - start));
-                lines.push(LogLine { t: rounded(t), event });
+                samples.push((rounded(t), self.sample(samples.is_empty(), t, stroke.at(t - start))));
                 t += 1.0 / EVENT_RATE_HZ;
             }
             from = to;
         }
-        lines.push(LogLine { t: rounded(t), event: LogEvent::End { contact: self.contact } });
-        lines
+        LogLine::contact(self.contact, (self.surface, LogHand::felt_by(0)), samples, rounded(t))
     }
 
-    fn event(&self, first: bool, t: f64, (place, velocity): ([f64; 2], [f64; 2])) -> LogEvent {
+    fn sample(&self, first: bool, t: f64, (place, velocity): ([f64; 2], [f64; 2])) -> ContactSample {
         let since = t - self.start_s;
         let tremor = TREMOR_M * (2.0 * PI * TREMOR_HZ * since).sin();
         let wander =
             1.0 + 0.04 * (2.0 * PI * 1.7 * since).sin() + 0.02 * (2.0 * PI * 4.1 * since + 1.0).sin();
-        let sample = ContactSample {
+        ContactSample {
             uv: [rounded(place[0] / self.extent_m[0]), rounded((place[1] + tremor) / self.extent_m[1])],
             velocity_m_s: Some(velocity.map(rounded)),
             normal_force_n: rounded(self.normal_force_n * wander * pressing(since)),
             closing_m_s: if first { LANDING_M_S } else { 0.0 },
             ..ContactSample::default()
-        };
-        if first {
-            let surface = self.surface.to_owned();
-            LogEvent::begin(self.contact, surface, self.actuator, sample)
-        } else {
-            LogEvent::moved(self.contact, sample)
         }
     }
 }
@@ -144,9 +135,53 @@ impl Stroke {
     }
 }
 
-/// Seven digits after the point: a tenth of a micrometre, and short lines.
+/// A tenth of a micrometre.
 fn rounded(value: f64) -> f64 {
-    (value * 1e7).round() / 1e7
+    scene_log::rounded(value, 7)
+}
+
+/// A tenth of a millisecond.
+fn stamp(t: f64) -> f64 {
+    scene_log::rounded(t, 4)
+}
+
+/// A finger that lies still on a surface, from and to, s.
+pub fn resting(
+    contact: u64,
+    surface: &str,
+    uv: [f64; 2],
+    normal_force_n: f64,
+    [from_s, to_s]: [f64; 2],
+) -> Vec<LogLine> {
+    let sample = ContactSample::new(uv, normal_force_n).sliding([0.0; 2]);
+    let reports = ((to_s - from_s) * EVENT_RATE_HZ) as u32;
+    let samples = (0..reports).map(|step| (stamp(from_s + f64::from(step) / EVENT_RATE_HZ), sample));
+    LogLine::contact(contact, (surface, LogHand::felt_by(0)), samples, stamp(to_s))
+}
+
+/// An impact on a body, at a place where one is named, by something of a material, with its mass
+/// and radius, kg and m.
+pub fn strike(
+    t: f64,
+    (body, at_m): (&str, Option<[f64; 3]>),
+    speed_m_s: f64,
+    striker: impl Into<Striker>,
+    (mass_kg, radius_m): (f64, f64),
+) -> LogLine {
+    let event = LogEvent::Impact {
+        body: body.to_owned(),
+        other: None,
+        speed_m_s,
+        mass_kg,
+        radius_m,
+        striker: striker.into(),
+        restitution: 0.5,
+        position: 0,
+        at_m,
+        direction: None,
+        hand: LogHand::default(),
+    };
+    LogLine { t: stamp(t), event }
 }
 
 /// A log of several fingers and strikes, in time order.
@@ -181,7 +216,6 @@ mod tests {
         let finger = Finger {
             contact: 1,
             surface: "plate",
-            actuator: 0,
             extent_m: [0.14, 0.14],
             start_s: 0.1,
             normal_force_n: 0.6,

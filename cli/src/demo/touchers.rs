@@ -33,7 +33,6 @@ pub fn scene() -> DemoScene {
         let finger = Finger {
             contact,
             surface: "board",
-            actuator: 0,
             extent_m: [SIDE_M; 2],
             start_s,
             normal_force_n: 1.0,

@@ -20,15 +20,19 @@ pub type Column = (String, Vec<f64>);
 /// Columns of a text whose cells are set apart by commas, semicolons or tabs.
 pub fn of_csv(text: &str) -> Vec<Column> {
     let text = text.trim_start_matches('\u{feff}');
-    let mut lines = text.lines().map(str::trim_end).filter(|l| !l.trim().is_empty() && !l.starts_with('#'));
-    let head = lines.next().unwrap_or("");
+    let is_told = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
+    let head = text.lines().find(is_told).unwrap_or("");
     let separator = [';', '\t'].into_iter().find(|c| head.contains(*c)).unwrap_or(',');
-    let mut columns: Vec<Column> =
-        cells(head, separator).into_iter().map(|name| (name, Vec::new())).collect();
-    for line in lines {
-        let cells = cells(line, separator);
+    let lines: Vec<&str> = text.lines().filter(is_told).collect();
+    let mut reader = csv::ReaderBuilder::new();
+    reader.delimiter(separator as u8).flexible(true).has_headers(false).trim(csv::Trim::All);
+    let text = lines.join("\n");
+    let mut rows = reader.from_reader(text.as_bytes()).into_records().filter_map(Result::ok);
+    let names = rows.next().unwrap_or_default();
+    let mut columns: Vec<Column> = names.iter().map(|name| (name.to_owned(), Vec::new())).collect();
+    for row in rows {
         for (i, (_, column)) in columns.iter_mut().enumerate() {
-            let cell = cells.get(i).map_or("", String::as_str).trim_end_matches('%').trim();
+            let cell = row.get(i).unwrap_or("").trim_end_matches('%').trim();
             // Where semicolons separate, commas are decimal.
             let decimal = if separator == ',' { cell.to_owned() } else { cell.replace(',', ".") };
             column.push(decimal.parse().unwrap_or(f64::NAN));
@@ -54,21 +58,6 @@ pub fn of_rows(json: &Value) -> Option<Vec<Column>> {
     let names = rows[0].as_object()?.iter().filter(|(_, value)| value.is_number()).map(|(name, _)| name);
     let number = |row: &Value, name: &str| row[name].as_f64().unwrap_or(f64::NAN);
     Some(names.map(|name| (name.clone(), rows.iter().map(|row| number(row, name)).collect())).collect())
-}
-
-fn cells(line: &str, separator: char) -> Vec<String> {
-    let (mut cells, mut cell, mut quoted) = (Vec::new(), String::new(), false);
-    let mut rest = line.chars().peekable();
-    while let Some(c) = rest.next() {
-        match c {
-            '"' if quoted && rest.next_if_eq(&'"').is_some() => cell.push('"'),
-            '"' => quoted = !quoted,
-            _ if c == separator && !quoted => cells.push(std::mem::take(&mut cell).trim().to_owned()),
-            _ => cell.push(c),
-        }
-    }
-    cells.push(cell.trim().to_owned());
-    cells
 }
 
 /// Names without units, in lower case, and frequencies and decays in the terms of a modes file

@@ -16,6 +16,7 @@
 
 use super::columns;
 use crate::error::CliError;
+use crate::paths::has_end;
 use asperity::{MAX_POSITIONS, ModalModel};
 use asperity_dsp::mode::Mode;
 use asperity_fit::after::table;
@@ -27,9 +28,6 @@ const MAX_BYTES: u64 = 64 << 20;
 
 /// Names of columns with levels.
 const LEVELS: [&str; 4] = ["amplitude", "gain", "level_db", "op"];
-
-/// Endings of tables that are texts of cells, as spreadsheets and modal analysis save them.
-const TEXTS: [&str; 3] = ["csv", "tsv", "txt"];
 
 /// Numbers that stand for what a table lacks.
 #[derive(Debug, Clone, Default)]
@@ -58,8 +56,7 @@ pub struct Imported {
 
 /// Tests whether a file is a table by its name.
 pub fn is_table(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    ending.as_deref().is_some_and(|ending| ending == "json" || TEXTS.contains(&ending))
+    has_end(path, &["json"]) || crate::columns::is_table(path)
 }
 
 /// Reads a table.
@@ -73,7 +70,7 @@ pub fn read(path: &Path, missing: &Missing) -> Result<Imported, CliError> {
     }
     let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
     let in_file = |error: CliError| error.within(path.display());
-    if path.extension().is_some_and(|ending| TEXTS.iter().any(|text| ending.eq_ignore_ascii_case(text))) {
+    if crate::columns::is_table(path) {
         return of_columns(columns::of_csv(&text)).map_err(in_file);
     }
     let text = text.trim_start_matches('\u{feff}');

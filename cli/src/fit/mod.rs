@@ -47,10 +47,10 @@ const STEPS: u64 = 200;
 pub fn run(options: &Options) -> Result<(), CliError> {
     if import::is_table(&options.recording) {
         let report = import_table(options)?;
-        return if options.json { output::say_json(&report) } else { report.say(options) };
+        return output::say_report(&report, options.json, || report.in_words(options));
     }
     let report = fit(options)?;
-    if options.json { output::say_json(&report) } else { report.say(options) }
+    output::say_report(&report, options.json, || report.in_words(options))
 }
 
 /// Fits and writes the files; the report is what `--json` prints.

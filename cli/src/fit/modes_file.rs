@@ -3,11 +3,13 @@
 
 use crate::error::CliError;
 use crate::output::Outputs;
+use asperity::Residual;
 use asperity_dsp::diffuse::DiffuseBand;
 use asperity_dsp::mode::Mode;
-use asperity_fit::body::residual::{BandEnvelope, Burst};
+use asperity_fit::body::residual::Burst;
 use asperity_fit::{Fit, FittedMode};
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Contents of a modes file.
@@ -23,70 +25,28 @@ pub struct Body<'a> {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     takes: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    fit: Option<Details>,
+    fit: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    residual: Option<Excitation>,
+    residual: Option<Residual>,
     #[serde(skip_serializing_if = "Option::is_none")]
     diffuse: Option<asperity::Diffuse>,
 }
 
-/// The residual that impacts play.
-#[derive(Serialize)]
-struct Excitation {
-    sample_rate_hz: f64,
-    samples: Vec<f32>,
-}
-
 #[derive(Serialize)]
 struct FileMode {
-    frequency_hz: f64,
-    decay_per_s: f64,
-    amplitude: f64,
-    phase_rad: f64,
+    #[serde(flatten)]
+    mode: Mode,
+    /// Standard deviations; null where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    std: Option<Deviation>,
+    std: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     energy: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Deviation {
-    frequency_hz: Option<f64>,
-    decay_per_s: Option<f64>,
-    amplitude: Option<f64>,
-    phase_rad: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Details {
-    sample_rate_hz: f64,
-    onset_s: f64,
-    start_offset_s: f64,
-    end_s: f64,
-    noise_floor_db: f64,
-    resynthesis_snr_db: f64,
-    residual: ResidualSummary,
-}
-
-#[derive(Serialize)]
-struct ResidualSummary {
-    level_db: f64,
-    attack_db: f64,
-    step_s: f64,
-    bands: Vec<Band>,
-}
-
-#[derive(Serialize)]
-struct Band {
-    low_hz: f64,
-    high_hz: f64,
-    rms: Vec<f64>,
 }
 
 impl<'a> Body<'a> {
     /// Modes alone.
     pub fn plain(source: &'a str, modes: &[Mode], impulse_n_s: f64) -> Self {
-        let modes = modes.iter().map(plain).collect();
+        let modes = modes.iter().map(|mode| FileMode { mode: *mode, std: None, energy: None }).collect();
         let (format, version) = ("asperity.modes", 1);
         let (positions, fit, residual, diffuse) = (Vec::new(), None, None, None);
         Self { format, version, source, impulse_n_s, modes, positions, takes: false, fit, residual, diffuse }
@@ -95,7 +55,7 @@ impl<'a> Body<'a> {
     /// A fit, with `modes` (rescaled ones, perhaps) in the place of its own.
     pub fn fitted(fit: &'a Fit, modes: &[Mode], impulse_n_s: f64) -> Self {
         let modes = modes.iter().zip(&fit.modes).map(|(mode, fitted)| detailed(mode, fitted)).collect();
-        Self { modes, fit: Some(Details::of(fit)), ..Self::plain(&fit.source, &[], impulse_n_s) }
+        Self { modes, fit: Some(details(fit)), ..Self::plain(&fit.source, &[], impulse_n_s) }
     }
 
     /// With amplitudes at further strike positions.
@@ -126,7 +86,7 @@ impl<'a> Body<'a> {
 
     /// With a residual that impacts play.
     pub fn with_burst(mut self, burst: Option<Burst>) -> Self {
-        self.residual = burst.map(|burst| Excitation {
+        self.residual = burst.map(|burst| Residual {
             sample_rate_hz: burst.sample_rate_hz,
             samples: burst.samples.iter().map(|&x| x as f32).collect(),
         });
@@ -134,57 +94,37 @@ impl<'a> Body<'a> {
     }
 }
 
-impl Details {
-    fn of(fit: &Fit) -> Self {
-        let band =
-            |band: &BandEnvelope| Band { low_hz: band.low_hz, high_hz: band.high_hz, rms: band.rms.clone() };
-        Self {
-            sample_rate_hz: fit.sample_rate_hz,
-            onset_s: fit.onset_s,
-            start_offset_s: fit.start_offset_s,
-            end_s: fit.end_s,
-            noise_floor_db: fit.noise_floor_db,
-            resynthesis_snr_db: fit.resynthesis_snr_db,
-            residual: ResidualSummary {
-                level_db: fit.residual.level_db,
-                attack_db: fit.residual.attack_db,
-                step_s: asperity_fit::body::residual::STEP_S,
-                bands: fit.residual.bands.iter().map(band).collect(),
-            },
-        }
-    }
+/// What is known of the recording and of what the modes leave of it.
+fn details(fit: &Fit) -> Value {
+    json!({
+        "sample_rate_hz": fit.sample_rate_hz,
+        "onset_s": fit.onset_s,
+        "start_offset_s": fit.start_offset_s,
+        "end_s": fit.end_s,
+        "noise_floor_db": fit.noise_floor_db,
+        "resynthesis_snr_db": fit.resynthesis_snr_db,
+        "residual": {
+            "level_db": fit.residual.level_db,
+            "attack_db": fit.residual.attack_db,
+            "step_s": asperity_fit::body::residual::STEP_S,
+            "bands": fit.residual.bands,
+        },
+    })
 }
 
 /// Writes a modes file.
 pub fn write(outputs: &mut Outputs, path: &Path, body: &Body<'_>) -> Result<(), CliError> {
-    let text = serde_json::to_string_pretty(body)
-        .map_err(|error| CliError::file(path, error, "please report it with the input"))?;
-    outputs.write(path, text.as_bytes())
-}
-
-fn plain(mode: &Mode) -> FileMode {
-    FileMode {
-        frequency_hz: mode.frequency_hz,
-        decay_per_s: mode.decay_per_s,
-        amplitude: mode.amplitude,
-        phase_rad: mode.phase_rad,
-        std: None,
-        energy: None,
-    }
+    outputs.write_json(path, body)
 }
 
 fn detailed(mode: &Mode, fitted: &FittedMode) -> FileMode {
-    let finite = |x: f64| x.is_finite().then_some(x);
     // A rescaled mode's deviations scale with it.
     let (f, d) = (mode.frequency_hz / fitted.frequency_hz, mode.decay_per_s / fitted.decay_per_s.max(1e-12));
-    FileMode {
-        std: Some(Deviation {
-            frequency_hz: finite(fitted.frequency_std_hz * f),
-            decay_per_s: finite(fitted.decay_std_per_s * d),
-            amplitude: finite(fitted.amplitude_std),
-            phase_rad: finite(fitted.phase_std_rad),
-        }),
-        energy: Some(fitted.energy),
-        ..plain(mode)
-    }
+    let std = json!({
+        "frequency_hz": fitted.frequency_std_hz * f,
+        "decay_per_s": fitted.decay_std_per_s * d,
+        "amplitude": fitted.amplitude_std,
+        "phase_rad": fitted.phase_std_rad,
+    });
+    FileMode { mode: *mode, std: Some(std), energy: Some(fitted.energy) }
 }

@@ -96,40 +96,6 @@ pub struct Options {
 }
 
 impl Options {
-    /// The options of `asperity fit RECORDING -o OUT`.
-    #[must_use]
-    pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
-        Self {
-            recording,
-            further: Vec::new(),
-            family: false,
-            output,
-            impulse: 0.01,
-            max_modes: FitOptions::default().max_modes,
-            from_hz: 20.0,
-            to_hz: None,
-            min_level: -90.0,
-            channel: "loudest".to_owned(),
-            strike: None,
-            start_ms: None,
-            scale_size: None,
-            material: None,
-            merge: Vec::new(),
-            mesh: None,
-            residual: None,
-            resynthesis: None,
-            plot: None,
-            csv: None,
-            burst_ms: None,
-            bands: false,
-            entry: None,
-            base_hz: None,
-            t60: None,
-            table_rate: 44_100.0,
-            json: false,
-        }
-    }
-
     /// The further recordings of the same object: of `--family`, and of `--merge`.
     pub(super) fn others(&self) -> impl Iterator<Item = &PathBuf> {
         self.further.iter().chain(&self.merge)

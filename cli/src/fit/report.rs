@@ -2,7 +2,6 @@
 
 use super::Options;
 use super::places::PlacesReport;
-use crate::error::CliError;
 use crate::output;
 use asperity_dsp::mode::Mode;
 use asperity_fit::Fit;
@@ -89,8 +88,8 @@ impl Report {
     }
 
     /// Tells a person.
-    pub fn say(&self, options: &Options) -> Result<(), CliError> {
-        output::say(&format!(
+    pub fn in_words(&self, options: &Options) -> String {
+        let mut text = format!(
             "{}: {} modes, {:.1} dB above what they leave, struck {} dB of the recording's peak, onset at {:.4} s, noise {:.0} dB; {:.1} s",
             options.output.display(),
             self.modes,
@@ -99,18 +98,14 @@ impl Report {
             self.onset_s,
             self.noise_floor_db,
             self.seconds
-        ));
+        );
         for [frequency_hz, decay_per_s, amplitude] in &self.strongest {
             let t60_s = 3.0 * std::f64::consts::LN_10 / decay_per_s;
-            output::say(&format!("  {frequency_hz:10.2} Hz   T60 {t60_s:7.3} s   amplitude {amplitude:.4}"));
+            text += &format!("\n  {frequency_hz:10.2} Hz   T60 {t60_s:7.3} s   amplitude {amplitude:.4}");
         }
-        for warning in &self.warnings {
-            output::say(&format!("  warning: {warning}"));
-        }
-        for line in self.places.iter().flat_map(PlacesReport::lines) {
-            output::say(&format!("  {line}"));
-        }
-        Ok(())
+        text += &output::warned(&self.warnings);
+        text.extend(self.places.iter().flat_map(PlacesReport::lines).map(|line| format!("\n  {line}")));
+        text
     }
 }
 
@@ -147,12 +142,8 @@ impl TableReport {
     }
 
     /// Tells a person.
-    pub fn say(&self, options: &Options) -> Result<(), CliError> {
-        let (modes, positions) = (self.modes, self.positions);
-        output::say(&format!("{}: {modes} modes, {positions} strike positions", options.output.display()));
-        for warning in &self.warnings {
-            output::say(&format!("  warning: {warning}"));
-        }
-        Ok(())
+    pub fn in_words(&self, options: &Options) -> String {
+        let (modes, positions, warnings) = (self.modes, self.positions, output::warned(&self.warnings));
+        format!("{}: {modes} modes, {positions} strike positions{warnings}", options.output.display())
     }
 }

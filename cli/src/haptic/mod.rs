@@ -7,7 +7,7 @@ mod port;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
-use asperity_ports::score::Reference;
+use asperity_ports::score::{Reference, Score};
 use asperity_ports::{Clip, Device, felt, oscillator, reduction, resample};
 use clap::Args;
 use input::Input;
@@ -76,17 +76,9 @@ struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     way: Option<&'static str>,
     #[serde(flatten)]
-    score: Option<ScoreReport>,
+    score: Option<Score>,
     warnings: Vec<String>,
     files: Vec<PathBuf>,
-}
-
-#[derive(Debug, Clone, Copy, Serialize)]
-struct ScoreReport {
-    in_band_error_db: f64,
-    balance_db: f64,
-    level_bias_db: f64,
-    envelope_correlation: f64,
 }
 
 /// Runs the verb.
@@ -105,15 +97,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let input = input::read(&options.input, options.channel, &device)?;
     let mut outputs = Outputs::new();
     let made = made(input, &port, &options.output, &device, &options.port, &mut outputs)?;
-    let score = options.score.then(|| {
-        let score = Reference::new(&made.original, device.band_hz).score(&made.left);
-        ScoreReport {
-            in_band_error_db: score.in_band_error_db,
-            balance_db: score.balance_db,
-            level_bias_db: score.level_bias_db,
-            envelope_correlation: score.envelope_correlation,
-        }
-    });
+    let score = options.score.then(|| Reference::new(&made.original, device.band_hz).score(&made.left));
     if let Some(path) = &options.plot {
         let title = format!("{}, as it was and as left for: {}", name_of(&options.input), device.label);
         outputs.write(path, picture::svg(&title, &made, &device).as_bytes())?;
@@ -129,7 +113,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         warnings: made.warnings,
         files: outputs.commit()?,
     };
-    if options.json { output::say_json(&report) } else { say(&report, &options.output) }
+    output::say_report(&report, options.json, || in_words(&report, &options.output))
 }
 
 /// Writes the haptic channel of a render as a port; what `render --port` does.
@@ -300,9 +284,18 @@ fn at_rate(samples: &[f64], rate_hz: f64) -> Vec<f64> {
     resample::resampled(samples, felt::RATE_HZ, rate_hz)
 }
 
-fn say(report: &Report, path: &Path) -> Result<(), CliError> {
-    output::say(&format!(
-        "{}: {:.2} s, {} points, gain {:.3}, for {} ({} to {} Hz)",
+fn in_words(report: &Report, path: &Path) -> String {
+    let score = report.score.map_or(String::new(), |score| {
+        format!(
+            "\nwhat is left: third octaves in band off by {:.1} dB, balance {:.1} dB, level {} dB, envelope {:.3}",
+            score.in_band_error_db,
+            score.balance_db,
+            asperity_plot::decibels(score.level_bias_db),
+            score.envelope_correlation
+        )
+    });
+    format!(
+        "{}: {:.2} s, {} points, gain {:.3}, for {} ({} to {} Hz){score}{}",
         path.display(),
         report.duration_s,
         report.points,
@@ -310,18 +303,6 @@ fn say(report: &Report, path: &Path) -> Result<(), CliError> {
         report.device,
         report.band_hz[0],
         report.band_hz[1],
-    ));
-    if let Some(score) = report.score {
-        output::say(&format!(
-            "what is left: third octaves in band off by {:.1} dB, balance {:.1} dB, level {} dB, envelope {:.3}",
-            score.in_band_error_db,
-            score.balance_db,
-            asperity_plot::decibels(score.level_bias_db),
-            score.envelope_correlation
-        ));
-    }
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
+        output::warned(&report.warnings)
+    )
 }

@@ -1,16 +1,14 @@
 //! The whole chain of one contact beside the sum of its kernels, each alone on the same stroke:
 //! what is left over is glue.
 
-use super::{BLOCK_FRAMES, SAMPLE_RATE_HZ, refused};
-use crate::bench_scene::{Bench, Load, modes, plate};
+use super::{BLOCK_FRAMES, SAMPLE_RATE_HZ, refused, ringing};
+use crate::bench_scene::{Bench, Load, plate};
 use crate::error::CliError;
 use crate::measure::Timing;
 use asperity::{Config, Integrator, Probe};
 use asperity_dsp::butterworth::{self, Butterworth, Two};
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
-use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups, sort_by_decay};
-use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_surface::height_field::{HeightField, PathBlock, SurfaceBlock};
 use serde::Serialize;
@@ -59,8 +57,7 @@ struct Stroke {
 pub(super) fn measured() -> Result<Kernels, CliError> {
     let mut kernels = kernels()?;
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
-    let mut bench =
-        Bench::new(LOAD, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let mut bench = Bench::new(LOAD, config)?;
     let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
     let ns = 1e9 / (BLOCKS * BLOCK_FRAMES) as f64;
     let mut times = vec![Vec::new(); kernels.len()];
@@ -141,7 +138,7 @@ fn kernels() -> Result<Vec<Kernel>, CliError> {
         ("micro-relief below the map", relief),
         ("pad, exact between events", pad),
         ("high-passes, felt and heard", filters),
-        ("bank of 100 modes", bank()?),
+        ("bank of 100 modes", Box::new(ringing(LOAD.modes_per_body)?)),
     ])
 }
 
@@ -208,22 +205,6 @@ fn path() -> Result<Work, CliError> {
         blocks += 1;
         trajectory.advance(&design, &mut points);
         black_box(&points);
-    }))
-}
-
-fn bank() -> Result<Work, CliError> {
-    let mut modes = modes(LOAD.modes_per_body).modes;
-    sort_by_decay(&mut modes);
-    let groups = design_groups(&modes, SAMPLE_RATE_HZ, &GroupOptions::IMPULSE_RING);
-    let groups = groups.collect::<Result<Vec<_>, _>>().map_err(refused)?;
-    let states = vec![GroupState::REST; groups.len()];
-    let mut bank = ModalBank::new(Level::detect(), groups, states);
-    let (mut at, mut out) = (0, [0.0f32; BLOCK_FRAMES]);
-    Ok(Box::new(move || {
-        out.fill(0.0);
-        bank.render(at, Inputs::One(&[1e-6; BLOCK_FRAMES]), &mut out);
-        at += BLOCK_FRAMES as u64;
-        black_box(&out);
     }))
 }
 

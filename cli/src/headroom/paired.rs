@@ -1,7 +1,7 @@
 //! Rows that compare two things: in turn, a block's time of the one and of the other, so that both
 //! see the same machine; the median of the pairs.
 
-use super::{BLOCK_FRAMES, GROWTH_S, SAMPLE_RATE_HZ, refused};
+use super::{BLOCK_FRAMES, GROWTH_S, SAMPLE_RATE_HZ};
 use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
 use crate::measure::Timing;
@@ -68,7 +68,7 @@ impl Way {
     fn bench(self) -> Result<Bench, CliError> {
         let Self { load, isa: kernel, threads, .. } = self;
         let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, kernel, threads, ..Config::default() };
-        Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))
+        Bench::new(load, config)
     }
 
     /// Ns a sample of the next frames.

@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use asperity::ModeShapes;
 use asperity_shape::gltf::Document;
+use asperity_shape::vector::{add_scaled, cross, dot, length, sub, unit};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -98,30 +99,21 @@ fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[f64; 3]>, Vec<f
     let mut areas = vec![if triangles.is_empty() { 1.0 } else { 0.0 }; points.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|i| points[i as usize]);
-        let (u, v) = (minus(b, a), minus(c, a));
-        let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let (u, v) = (sub(b, a), sub(c, a));
+        let area = cross(u, v);
         for corner in triangle {
             let normal = &mut normals[*corner as usize];
-            *normal = std::array::from_fn(|k| normal[k] + area[k]);
-            areas[*corner as usize] += dot(area, area).sqrt() / 3.0;
+            *normal = add_scaled(*normal, 1.0, area);
+            areas[*corner as usize] += length(area) / 3.0;
         }
     }
     let normals = normals
         .iter()
         .zip(points)
         .map(|(normal, point)| {
-            let outwards = if dot(*normal, *normal) > 0.0 { *normal } else { minus(*point, middle) };
-            let length = dot(outwards, outwards).sqrt();
-            if length > 0.0 { outwards.map(|x| x / length) } else { [0.0, 0.0, 1.0] }
+            let outwards = if dot(*normal, *normal) > 0.0 { *normal } else { sub(*point, middle) };
+            if length(outwards) > 0.0 { unit(outwards) } else { [0.0, 0.0, 1.0] }
         })
         .collect();
     (normals, areas)
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

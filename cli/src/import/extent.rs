@@ -6,6 +6,7 @@
 
 use crate::error::CliError;
 use asperity_shape::gltf::{Document, Placed, place};
+use asperity_shape::vector::{cross, length, sub};
 use serde_json::Value;
 
 /// Side of a surface whose node has no mesh, m.
@@ -39,7 +40,7 @@ pub fn extent_m(
         for t in triangles {
             let Some(uv) = three(t.map(|i| coordinates.get(i as usize).copied())) else { continue };
             let [a, b, c] = t.map(|i| points[i as usize]);
-            let (ab, ac) = (minus(b, a), minus(c, a));
+            let (ab, ac) = (sub(b, a), sub(c, a));
             let (du, dv) =
                 ([uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]], [uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]]);
             let determinant = du[0] * dv[1] - du[1] * dv[0];
@@ -94,16 +95,4 @@ pub fn coordinates(
 
 fn three<T: Copy>([a, b, c]: [Option<T>; 3]) -> Option<[T; 3]> {
     Some([a?, b?, c?])
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

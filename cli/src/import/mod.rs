@@ -9,6 +9,7 @@ mod plain;
 use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::unwrap::UnwrapOptions;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine, Striker};
 use asperity_plot::pixels;
 use asperity_shape::ShapeError;
 use asperity_shape::gltf::{Document, Placed};
@@ -117,17 +118,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         warnings: std::mem::take(&mut scene.told),
         files: outputs.commit()?,
     };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "{}: {} bodies, {} surfaces",
-        options.output.display(),
-        report.bodies,
-        report.surfaces
-    ));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let Report { bodies, surfaces, warnings, .. } = &report;
+        format!(
+            "{}: {bodies} bodies, {surfaces} surfaces{}",
+            options.output.display(),
+            output::warned(warnings)
+        )
+    })
 }
 
 /// Bodies and surfaces of the nodes of a document.
@@ -299,29 +297,22 @@ impl Scene {
     /// A strike on every body, then a stroke on every surface: the document says what there is, not
     /// what is done to it.
     fn contacts(&self) -> String {
-        let mut text = String::new();
-        let mut t = 0.0;
+        let (mut log, mut t) = (ContactLog::default(), 0.0);
         for (name, _) in &self.bodies {
-            let strike = json!({"t": t, "event": "impact", "body": name, "speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "striker": "steel"});
-            let _ = writeln!(text, "{strike}");
+            let event = LogEvent::strike(name.as_str(), 0.5, Striker::Preset("steel".into()), (0.01, 0.005));
+            log.lines.push(LogLine { t, event });
             t += 0.5;
         }
         for (contact, (name, _)) in self.surfaces.iter().enumerate() {
-            for step in 0..=24 {
+            let samples = (0..=24).map(|step| {
                 let part = f64::from(step) / 24.0;
-                let mut event = json!({"t": t + 0.4 * part, "event": "move", "contact": contact, "uv": [0.2 + 0.6 * part, 0.5], "normal_force_n": 0.6});
-                if step == 0 {
-                    event["event"] = json!("begin");
-                    event["surface"] = json!(name);
-                    event["actuator"] = json!(0);
-                }
-                let _ = writeln!(text, "{event}");
-            }
-            t += 0.45;
-            let _ = writeln!(text, "{}", json!({"t": t, "event": "end", "contact": contact}));
-            t += 0.1;
+                (t + 0.4 * part, ContactSample::new([0.2 + 0.6 * part, 0.5], 0.6))
+            });
+            let touching = (name.as_str(), LogHand::felt_by(0));
+            log.lines.extend(LogLine::contact(contact as u64, touching, samples, t + 0.45));
+            t = t + 0.45 + 0.1;
         }
-        text
+        log.to_jsonl()
     }
 }
 

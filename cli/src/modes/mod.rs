@@ -3,6 +3,7 @@
 mod options;
 mod picture;
 
+use crate::arguments::plain;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
@@ -11,10 +12,9 @@ use asperity_shape::modes_file::ModesFile;
 use asperity_shape::surface_mesh::SurfaceMesh;
 use asperity_shape::unwrap::Unwrapped;
 use asperity_shape::{Elastic, Making, Mesh};
-use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Steps of the progress bar.
@@ -52,7 +52,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let report = make(options, &mut |done| progress.reach(done));
     drop(progress);
     let report = report?;
-    if options.json { output::say_json(&report) } else { say(&report, options) }
+    output::say_report(&report, options.json, || in_words(&report, options))
 }
 
 /// Modes of a mesh of a material, `size_m` long or as long as it is, as `asperity modes` writes
@@ -68,7 +68,7 @@ pub fn model(
 ) -> Result<ModalModel, CliError> {
     let Material { young_pa, poisson, density_kg_m3, .. } = *material;
     let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::from_error)?;
-    let wanted = Options::plain(mesh.into(), PathBuf::new()).wanted()?;
+    let wanted = plain::<Options>(mesh, mesh)?.wanted()?;
     let making = Making { material: elastic, size_m, unit_m: None, thickness_m: None, wanted };
     let told =
         |error: asperity_shape::ShapeError| CliError::from_error(error.within(&mesh.display().to_string()));
@@ -97,7 +97,7 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     let making = Making {
         material,
         size_m: options.size,
-        unit_m: options.unit.map(Unit::metres),
+        unit_m: options.unit,
         thickness_m: options.thickness,
         wanted,
     };
@@ -172,26 +172,23 @@ fn sheet(mesh: &Mesh, options: &Options) -> Result<SurfaceMesh, CliError> {
             along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
         })
         .fold(0.0, f64::max);
-    let scale = options.size.map_or(options.unit.map_or(1.0, Unit::metres), |size_m| size_m / longest_m);
+    let scale = options.size.map_or(options.unit.unwrap_or(1.0), |size_m| size_m / longest_m);
     surface.points.iter_mut().flatten().for_each(|x| *x *= scale);
     Ok(surface)
 }
 
-fn say(report: &Report, options: &Options) -> Result<(), CliError> {
-    output::say(&format!(
-        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s",
+fn in_words(report: &Report, options: &Options) -> String {
+    format!(
+        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s{}",
         options.output.display(),
         report.modes,
         report.lowest_hz,
         report.highest_hz,
         1e3 * report.mass_kg,
         report.degrees_of_freedom,
-        report.seconds
-    ));
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
+        report.seconds,
+        output::warned(&report.warnings)
+    )
 }
 
 /// Most memory the program has held so far, MiB; only where the system tells.

@@ -1,5 +1,6 @@
 //! Options of `asperity modes`, and what they say about the body.
 
+use crate::arguments::{Words, one_of};
 use crate::error::CliError;
 use crate::unwrap::UnwrapOptions;
 use asperity::Material;
@@ -41,8 +42,8 @@ pub struct Options {
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
     /// Unit of the file's numbers, metres where nothing is said
-    #[arg(long, value_name = "UNIT", conflicts_with = "size")]
-    pub unit: Option<Unit>,
+    #[arg(long, value_name = "UNIT", value_parser = one_of(UNITS), conflicts_with = "size")]
+    pub unit: Option<f64>,
     /// Longest side, m: scales the mesh about the origin of its frame
     #[arg(long, value_name = "M")]
     pub size: Option<f64>,
@@ -79,58 +80,15 @@ pub struct Options {
     pub json: bool,
 }
 
-/// Unit of the numbers of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Unit {
-    /// Millimetres
-    Mm,
-    /// Centimetres
-    Cm,
-    /// Inches
-    In,
-    /// Metres
-    M,
-}
-
-impl Unit {
-    /// Its length, m.
-    pub fn metres(self) -> f64 {
-        match self {
-            Self::Mm => 1e-3,
-            Self::Cm => 1e-2,
-            Self::In => 0.0254,
-            Self::M => 1.0,
-        }
-    }
-}
+/// Units of the numbers of a mesh, m.
+const UNITS: Words<f64, 4> = [
+    ("mm", "Millimetres", 1e-3),
+    ("cm", "Centimetres", 1e-2),
+    ("in", "Inches", 0.0254),
+    ("m", "Metres", 1.0),
+];
 
 impl Options {
-    /// The options of `asperity modes BODY -o OUT`.
-    #[must_use]
-    pub fn plain(body: PathBuf, output: PathBuf) -> Self {
-        Self {
-            body,
-            output,
-            material: None,
-            young_pa: None,
-            poisson: None,
-            density_kg_m3: None,
-            part: None,
-            unit: None,
-            size: None,
-            thickness: None,
-            damping_from: None,
-            radiation: false,
-            shapes_beside: false,
-            shapes_glb: false,
-            unwrap: UnwrapOptions::default(),
-            up_to: None,
-            max_modes: None,
-            plot: None,
-            json: false,
-        }
-    }
-
     /// Which modes to solve for.
     pub fn wanted(&self) -> Result<Wanted, CliError> {
         if let Some(hz) = self.up_to.filter(|hz| !(*hz >= 1.0 && *hz <= 1e6)) {

@@ -108,7 +108,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     built.remarks.iter().for_each(|remark| eprintln!("warning: {remark}"));
     let watch = options.watch.then(|| Watch::new(file.clone(), overrides));
     let summary = play(built, &log, &file, &device_options, watch)?;
-    if options.json { output::say_json(&summary) } else { print(&summary) }
+    output::say_report(&summary, options.json, || in_words(&summary))
 }
 
 /// `--channels` takes one or two values and may have swallowed the scene that follows it.
@@ -279,18 +279,15 @@ fn summary(
     }
 }
 
-fn print(summary: &Summary) -> Result<(), CliError> {
-    output::say(&format!(
-        "{} {:.1} s on {} at {} Hz, blocks of {} frames",
+fn in_words(summary: &Summary) -> String {
+    format!(
+        "{} {:.1} s on {} at {} Hz, blocks of {} frames\n{} underruns, {} haptic underruns, stream built anew {} times; \
+         load {:.1} %, at most {:.1} %; latency {:.1} ms and {:.1} ms of the path filter; {} events, {} late, {} dropped{}",
         if summary.interrupted { "stopped after" } else { "played" },
         summary.played_s,
         summary.device.as_deref().unwrap_or("no device"),
         summary.sample_rate_hz,
         summary.callback_frames,
-    ));
-    output::say(&format!(
-        "{} underruns, {} haptic underruns, stream built anew {} times; load {:.1} %, at most {:.1} %; latency {:.1} ms \
-         and {:.1} ms of the path filter; {} events, {} late, {} dropped",
         summary.underruns,
         summary.haptic_underruns,
         summary.rebuilt,
@@ -301,9 +298,6 @@ fn print(summary: &Summary) -> Result<(), CliError> {
         summary.events,
         summary.late,
         summary.dropped,
-    ));
-    for warning in &summary.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
+        output::warned(&summary.warnings)
+    )
 }

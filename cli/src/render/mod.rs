@@ -140,24 +140,19 @@ fn paths() -> impl TypedValueParser<Value = PathMode> {
 /// When an input is bad or an output cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let report = render(options)?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    let files: Vec<String> = report.files.iter().map(|path| path.display().to_string()).collect();
-    output::say(&format!(
-        "{} of signal at {:.0}× real time: {}, {}, {}; audio peak {:.3}\nwrote {}",
-        asperity_plot::quantity(report.duration_s, "s"),
-        report.real_time_factor,
-        asperity_plot::counted(report.events, "event"),
-        asperity_plot::counted(report.micro_collisions, "micro-collision"),
-        asperity_plot::counted(report.impacts, "impact"),
-        report.audio_peak,
-        files.join(", "),
-    ));
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    Ok(())
+    output::say_report(&report, options.json, || {
+        format!(
+            "{} of signal at {:.0}× real time: {}, {}, {}; audio peak {:.3}\nwrote {}{}",
+            asperity_plot::quantity(report.duration_s, "s"),
+            report.real_time_factor,
+            asperity_plot::counted(report.events, "event"),
+            asperity_plot::counted(report.micro_collisions, "micro-collision"),
+            asperity_plot::counted(report.impacts, "impact"),
+            report.audio_peak,
+            output::listed(&report.files),
+            output::warned(&report.warnings),
+        )
+    })
 }
 
 /// Renders, writes the files and reports; `demo` uses it too.

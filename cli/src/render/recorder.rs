@@ -149,20 +149,8 @@ impl Trace {
         if block.first_sample >= self.end {
             self.write_rows(rate_hz)?;
         }
-        for (index, row) in block.contact_samples.iter().enumerate() {
-            let values = [
-                block.uv[index][0],
-                block.uv[index][1],
-                row.height_m,
-                row.normal_force_n,
-                row.pad_m,
-                row.pad_velocity_m_s,
-                row.finger_m,
-                row.contact_force_n,
-                block.impulse_n_s[index],
-            ];
-            self.rows.push((block.first_sample + index as u64, block.contact.0, values));
-        }
+        let rows = (block.first_sample..).zip(block.trace());
+        self.rows.extend(rows.map(|(sample, values)| (sample, block.contact.0, values)));
         self.end = self.end.max(block.first_sample + block.contact_samples.len() as u64);
         Ok(())
     }

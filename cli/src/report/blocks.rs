@@ -1,6 +1,6 @@
 //! Frames a block: the whole engine, one finger on a body of 100 modes.
 
-use super::{Row, SAMPLE_RATE_HZ, refused};
+use super::{Row, SAMPLE_RATE_HZ};
 use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
 use crate::measure::{Timing, relative_error};
@@ -15,8 +15,7 @@ const ROUNDS: usize = 5;
 /// The sound, and what each block took, s.
 fn render(block: usize) -> Result<(Vec<f32>, Vec<f64>), CliError> {
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
-    let mut bench =
-        Bench::new(LOAD, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let mut bench = Bench::new(LOAD, config)?;
     let mut audio = vec![0.0; (SECONDS * SAMPLE_RATE_HZ) as usize / 4096 * 4096];
     let mut haptic = vec![0.0; block];
     let times_s = audio.chunks_mut(block).map(|part| bench.block(&mut haptic[..part.len()], part)).collect();

@@ -10,8 +10,9 @@
 //! sparse reports of a real one cost stands in [`super::from_reports`].
 
 use super::SAMPLE_RATE_HZ;
-use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, plate, take};
+use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, take};
 use super::resampled::{after_the_lead_in, between};
+use crate::demo::scenes::plate_modes;
 use crate::error::CliError;
 use crate::measure::{Timing, relative_error};
 use asperity::files::contact_log::ContactLog;
@@ -96,7 +97,8 @@ impl Reference {
     ) -> Result<Self, CliError> {
         let chain = Chain { inner_rows: true, excitation, ..with_exact_contact(EnginePreset::Accurate) };
         let take = take(case, seed, &chain, log)?;
-        let (heard, contact) = (rung(&plate(), &take.impulse_n_s, take.inner_rate_hz), contact_of(&take));
+        let (heard, contact) =
+            (rung(&plate_modes(), &take.impulse_n_s, take.inner_rate_hz), contact_of(&take));
         Ok(Self { felt: take.haptic, heard, contact })
     }
 

@@ -3,7 +3,7 @@
 //! what was rendered.
 
 use asperity_dsp::masking::{erb_number, excitation_db, quiet_db_spl};
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{PowerSpectra, hann};
 use serde::Serialize;
 
 const FRAME_S: f64 = 0.02;
@@ -28,18 +28,15 @@ pub struct Missed {
 /// Mean squares of every frame in bands of a quarter of an ERB, by Hann windows.
 fn frames(sound: &[f64], rate_hz: f64) -> Vec<Vec<f64>> {
     let count = (FRAME_S * rate_hz) as usize;
-    let fft = FftPlanner::new().plan_fft_forward(count);
-    let window = |n: usize| 0.5 - 0.5 * (std::f64::consts::TAU * n as f64 / count as f64).cos();
+    let spectra = PowerSpectra::new(hann(count, 0.0), count);
     let in_bands = |frame: &[f64]| {
-        let mut spectrum: Vec<Complex<f64>> =
-            frame.iter().enumerate().map(|(n, x)| Complex::new(window(n) * x, 0.0)).collect();
-        fft.process(&mut spectrum);
+        let powers = spectra.of(frame.iter().copied());
         let mut bands = vec![0.0; BANDS_AN_ERB * ERBS.end as usize + 16];
-        for (bin, x) in spectrum.iter().enumerate().take(count / 2).skip(1) {
+        for (bin, own) in powers.iter().enumerate().take(count / 2).skip(1) {
             let band = (BANDS_AN_ERB as f64 * erb_number(bin as f64 * rate_hz / count as f64)) as usize;
             if let Some(power) = bands.get_mut(band) {
                 // The squares of the window are 3/8 in the mean.
-                *power += 2.0 * x.norm_sqr() / (count as f64 * count as f64 * 0.375);
+                *power += 2.0 * own / (count as f64 * count as f64 * 0.375);
             }
         }
         bands

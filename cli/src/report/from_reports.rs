@@ -12,8 +12,8 @@ use super::{CaseError, Row, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::relative_error;
 use asperity::PathMode;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine};
+use asperity_fft::{PowerSpectra, hann};
 use serde::Serialize;
 
 const REPORT_RATE_HZ: f64 = 60.0;
@@ -49,47 +49,34 @@ pub struct Stroke {
 fn log(case: &Case, rate_hz: f64) -> ContactLog {
     let (begin_s, end_s) = STROKE_S;
     let time_s = end_s - begin_s;
-    let mut lines: Vec<LogLine> = (0..(time_s * rate_hz) as usize)
-        .map(|report| {
-            let since_s = report as f64 / rate_hz;
-            let x = since_s / time_s;
-            let place_m = REACH_M * x * x * x * (10.0 + x * (6.0 * x - 15.0));
-            let velocity_m_s = REACH_M * 30.0 * x * x * (1.0 - x) * (1.0 - x) / time_s;
-            let sample = ContactSample {
-                uv: [0.1 + place_m / LENGTH_M, 0.5],
-                velocity_m_s: Some([velocity_m_s, 0.0]),
-                normal_force_n: case.force_n,
-                ..ContactSample::default()
-            };
-            let event = match report {
-                0 => LogEvent::begin(1, "ground", 0, sample),
-                _ => LogEvent::moved(1, sample),
-            };
-            LogLine { t: begin_s + since_s, event }
-        })
-        .collect();
-    lines.push(LogLine { t: end_s, event: LogEvent::End { contact: 1 } });
-    ContactLog { lines }
+    let samples = (0..(time_s * rate_hz) as usize).map(|report| {
+        let since_s = report as f64 / rate_hz;
+        let x = since_s / time_s;
+        let place_m = REACH_M * x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let velocity_m_s = REACH_M * 30.0 * x * x * (1.0 - x) * (1.0 - x) / time_s;
+        let sample = ContactSample {
+            uv: [0.1 + place_m / LENGTH_M, 0.5],
+            velocity_m_s: Some([velocity_m_s, 0.0]),
+            normal_force_n: case.force_n,
+            ..ContactSample::default()
+        };
+        (begin_s + since_s, sample)
+    });
+    ContactLog { lines: LogLine::contact(1, ("ground", LogHand::felt_by(0)), samples, end_s) }
 }
 
 /// Third-octave levels of each frame, dB.
 fn levels_db(samples: &[f64]) -> Vec<f64> {
     let frame = (FRAME_S * SAMPLE_RATE_HZ) as usize;
-    let fft = FftPlanner::new().plan_fft_forward(frame);
+    let spectra = PowerSpectra::new(hann(frame, 0.5), frame);
     let mut levels = Vec::new();
     for part in samples.chunks_exact(frame) {
-        let mut buffer: Vec<Complex<f64>> = (0..frame)
-            .map(|n| {
-                let turn = std::f64::consts::TAU * (n as f64 + 0.5) / frame as f64;
-                Complex::new(part[n] * (0.5 - 0.5 * turn.cos()), 0.0)
-            })
-            .collect();
-        fft.process(&mut buffer);
+        let powers = spectra.of(part.iter().copied());
         for band in BANDS {
             let edge = |side: f64| 1000.0 * 2f64.powf((f64::from(band) + side) / 3.0) * FRAME_S;
-            let bins = buffer.iter().enumerate().take(frame / 2);
+            let bins = powers.iter().enumerate().take(frame / 2);
             let inside = bins.filter(|(bin, _)| (edge(-0.5)..edge(0.5)).contains(&(*bin as f64)));
-            let power: f64 = inside.map(|(_, bin)| bin.norm_sqr()).sum();
+            let power: f64 = inside.map(|(_, power)| power).sum();
             levels.push(10.0 * power.max(1e-300).log10());
         }
     }

@@ -145,7 +145,7 @@ struct Report {
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 17] = [
+const AXES: [Axis; 14] = [
     integrator::rows,
     choices::oversampling_rows,
     choices::exciter_rows,
@@ -156,11 +156,8 @@ const AXES: [Axis; 17] = [
     noise::rows,
     noise::rows_on_cases,
     modes::culling_rows,
-    modes::struck_culling_rows,
-    modes::sleep_rows,
     modes::stroked_sleep_rows,
     modes::shedding_rows,
-    modes::struck_shedding_rows,
     modes::format_rows,
     blocks::rows,
 ];
@@ -186,10 +183,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     drop(progress);
     let (cpu, sample_rate_hz) = (cpu_name(), SAMPLE_RATE_HZ);
     let report = Report { cpu, sample_rate_hz, rows, end_to_end, from_reports, load, stability };
-    let json = serde_json::to_string_pretty(&report).map_err(CliError::from_error)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
-    outputs.write(&path("speed_vs_error.json"), json.as_bytes())?;
+    outputs.write_json(&path("speed_vs_error.json"), &report)?;
     outputs.write(
         &path("speed_vs_error.svg"),
         write::svg(&report.cpu, &report.rows, &report.end_to_end).as_bytes(),
@@ -211,12 +207,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         }
     }
     let files = outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
-    output::say(&format!("{text}\nwrote {}", names.join(", ")));
-    Ok(())
+    output::say_report(&report, options.json, || format!("{text}\nwrote {}", output::listed(&files)))
 }
 
 /// A kernel that refuses its own defaults is a defect.

@@ -4,7 +4,7 @@ use super::strokes::Strokes;
 use super::{BLOCK, Row, SAMPLE_RATE_HZ, excitation, refused};
 use crate::bench_scene;
 use crate::error::CliError;
-use crate::measure::{ns_per_item, relative_error};
+use crate::measure::ns_per_item;
 use asperity::Mode;
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::modal_bank::{
@@ -20,14 +20,8 @@ const SAMPLES: usize = 16_384;
 const OPTIONS: GroupOptions =
     GroupOptions { impulse_kernel_compensation: false, true_t60: true, derivative: 0 };
 const CULLING_REFERENCE: &str = "all 256 modes of a body under the strokes of the named cases, same numbers";
-const STRUCK_CULLING_REFERENCE: &str = "all 256 modes of a struck body, same numbers";
-const SLEEP_REFERENCE: &str = "256 modes of a body struck once that all ring on for 6 s";
 const SHEDDING_REFERENCE: &str =
     "all 256 modes of a body under the strokes of the named cases; a masking model orders what is left out";
-const STRUCK_SHEDDING_REFERENCE: &str =
-    "all 256 modes of a body struck once, 0.37 s; levels from 2 on leave no more modes out";
-/// Renders of a struck body that falls asleep.
-const SLEEP_SAMPLES: usize = 6 * 44_100;
 const FORMAT_REFERENCE: &str =
     "the paper's two-pole filter in f64, 256 modes under the strokes of the named cases";
 /// As the engine orders modes: between what a stroke sends in a sample and a strike, N·s.
@@ -88,37 +82,6 @@ fn ns(work: impl Fn() -> Vec<f32>) -> f64 {
     })
 }
 
-fn wide(values: Vec<f32>) -> impl Iterator<Item = f64> {
-    values.into_iter().map(f64::from)
-}
-
-/// A struck body whose groups fall asleep, at several thresholds.
-pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
-    let mut modes = body();
-    modes.sort_by(|a, b| ringing_s(b, 1.0).total_cmp(&ringing_s(a, 1.0)));
-    let groups = designed(&modes)?;
-    let mut impulses = strike();
-    impulses.resize(SLEEP_SAMPLES, 0.0);
-    let reference: Vec<f64> = wide(bank(&groups, Level::detect(), &impulses)).collect();
-    let row = |choice: String, ns_per_strike: f64, found: Vec<f32>| {
-        Row::of(
-            ("mode sleep", choice),
-            ns_per_strike * SAMPLES as f64 / SLEEP_SAMPLES as f64,
-            relative_error(wide(found), &reference),
-            SLEEP_REFERENCE,
-        )
-    };
-    let always = bank(&groups, Level::detect(), &impulses);
-    let mut rows = vec![row("never".to_owned(), ns(|| bank(&groups, Level::detect(), &impulses)), always)];
-    for level_db in [-160.0, -120.0, -100.0, -80.0, -60.0] {
-        let threshold = 10f32.powf(level_db / 20.0);
-        let note = if threshold == SLEEP_AMPLITUDE { " (the engine)" } else { "" };
-        let run = || sleeping_bank(&groups, groups.len(), threshold, &impulses);
-        rows.push(row(format!("−{} dB{note}", -level_db), ns(run), run()));
-    }
-    Ok(rows)
-}
-
 /// Costs under the strokes of the cases, in which little falls asleep.
 pub fn stroked_sleep_rows() -> Result<Vec<Row>, CliError> {
     let strokes = Strokes::new()?;
@@ -173,53 +136,11 @@ pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows.collect())
 }
 
-/// Costs of a body that is struck once.
-pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
-    let (modes, levels) = in_order_of_need(&bench_scene::modes(MODES).modes);
-    let groups = designed(&modes)?;
-    let impulses: Vec<f32> = strike().into_iter().map(|u| 1e-2 * u).collect();
-    let run = |driven: usize| sleeping_bank(&groups, driven, SLEEP_AMPLITUDE, &impulses);
-    let reference: Vec<f64> = wide(run(groups.len())).collect();
-    let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-    let rows = (0..MODE_LEVELS).map(|level| {
-        let driven = levels[level];
-        let found: Vec<f64> = wide(run(driven)).collect();
-        let louder_db = 10.0 * (power(&found) / power(&reference)).log10();
-        let name = format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len());
-        let excitation_db = Some(excitation::missed(&found, &reference, SAMPLE_RATE_HZ).excitation_db);
-        let error = relative_error(found, &reference);
-        let row =
-            Row::of(("load shedding, a strike", name), ns(|| run(driven)), error, STRUCK_SHEDDING_REFERENCE);
-        Row { excitation_db, ..row }
-    });
-    Ok(rows.collect())
-}
-
 /// Measures what leaving modes out saves and costs under strokes.
 pub fn culling_rows() -> Result<Vec<Row>, CliError> {
     let strokes = Strokes::new()?;
     let whole = designed(&body())?;
     let reference = strokes.heard(|sent| bank(&whole, Level::detect(), sent));
-    culled(|name, groups| {
-        let cases = strokes.errors(&strokes.heard(|sent| bank(groups, Level::detect(), sent)), &reference);
-        let ns = ns(|| bank(groups, Level::detect(), &strike()));
-        Row::on_cases(("mode culling", name), ns, cases, CULLING_REFERENCE)
-    })
-}
-
-/// Errors of a body that is struck once.
-pub fn struck_culling_rows() -> Result<Vec<Row>, CliError> {
-    let impulses = strike();
-    let reference: Vec<f64> = wide(bank(&designed(&body())?, Level::detect(), &impulses)).collect();
-    culled(|name, groups| {
-        let run = || bank(groups, Level::detect(), &impulses);
-        let error = relative_error(wide(run()), &reference);
-        Row::of(("mode culling, a strike", name), ns(run), error, STRUCK_CULLING_REFERENCE)
-    })
-}
-
-/// A row for what each way to leave modes out keeps.
-fn culled(row: impl Fn(String, &[ModeGroup]) -> Row) -> Result<Vec<Row>, CliError> {
     let all = body();
     let cullings = [
         ("none", Culling { level_db: f64::INFINITY, masking: false, ..Culling::default() }),
@@ -228,16 +149,18 @@ fn culled(row: impl Fn(String, &[ModeGroup]) -> Row) -> Result<Vec<Row>, CliErro
         ("below −40 dB", Culling { level_db: 40.0, masking: false, ..Culling::default() }),
         ("below −80 dB and masked", Culling::default()),
     ];
-    cullings
-        .into_iter()
-        .map(|(name, culling)| {
-            let mut keep = vec![false; all.len()];
-            let count = audible(&all, SAMPLE_RATE_HZ, &culling, &mut keep);
-            let kept: Vec<Mode> =
-                all.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(mode, _)| *mode).collect();
-            Ok(row(format!("{name}: {count} of {MODES} modes"), &designed(&kept)?))
-        })
-        .collect()
+    let row = |(name, culling): (&str, Culling)| {
+        let mut keep = vec![false; all.len()];
+        let count = audible(&all, SAMPLE_RATE_HZ, &culling, &mut keep);
+        let kept: Vec<Mode> =
+            all.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(mode, _)| *mode).collect();
+        let groups = designed(&kept)?;
+        let cases = strokes.errors(&strokes.heard(|sent| bank(&groups, Level::detect(), sent)), &reference);
+        let ns = ns(|| bank(&groups, Level::detect(), &strike()));
+        let name = format!("{name}: {count} of {MODES} modes");
+        Ok(Row::on_cases(("mode culling", name), ns, cases, CULLING_REFERENCE))
+    };
+    cullings.into_iter().map(row).collect()
 }
 
 /// The paper's filter, one mode after the other.

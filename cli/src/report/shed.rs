@@ -75,8 +75,7 @@ struct Stroke {
 fn strokes() -> Result<Vec<Stroke>, CliError> {
     let config = || Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
     let stroke = |_| {
-        let bench = Bench::of(LOAD, config(), &body(1));
-        let bench = bench.ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+        let bench = Bench::of(LOAD, config(), &body(1))?;
         Ok(Stroke { bench, heard: Vec::new(), felt: Vec::new(), times_s: Vec::new() })
     };
     let mut strokes = (0..=HIGHEST).map(stroke).collect::<Result<Vec<_>, CliError>>()?;

@@ -5,9 +5,10 @@
 //! heights → contact, exact between events → pad, force → nine modes in f64 → heard
 //! ```
 
-use super::cases::{CASES, Case, SEEDS, Take, plate};
+use super::cases::{CASES, Case, SEEDS, Take};
 use super::integrator::{OVERSAMPLING, Reference, rms};
 use super::{CaseError, Row, SAMPLE_RATE_HZ, refused};
+use crate::demo::scenes::plate_modes;
 use crate::error::CliError;
 use asperity::{Integrator, Probe};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
@@ -54,7 +55,7 @@ fn through(case: &Case, heights: &[f64], rate_hz: f64) -> Result<Take, CliError>
 /// The plate of the cases under a force, mode by mode; half a sample late, as a mean over the
 /// sample that ends there is.
 fn rung(force_n: &[f64], rate_hz: f64) -> Vec<f64> {
-    let model = plate();
+    let model = plate_modes();
     let mut out = vec![0.0; force_n.len()];
     for mode in &model.modes {
         let (keep, angle) = ((-mode.decay_per_s / rate_hz).exp(), TAU * mode.frequency_hz / rate_hz);

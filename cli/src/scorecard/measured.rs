@@ -3,14 +3,15 @@
 use super::{Matrix, Part};
 use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
+use crate::paths::has_end;
 use crate::report;
 use asperity::surface::solid_materials::SolidMaterial;
-use asperity::{Config, PathMode, Preset, Quantity, Surface};
+use asperity::{Config, PathMode, Preset, Quantity};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_evidence::abrasive;
 use asperity_evidence::growth::{growth, rms};
-use asperity_evidence::plates::{self, CONDITIONS, PLATES, Table};
+use asperity_evidence::plates::{self, CONDITIONS, Make, PLATES, Table};
 use asperity_evidence::{cramer_rao, impact, score};
 use asperity_fit::{ChannelChoice, FitOptions, Recording, fit as fit_recording, load};
 use asperity_ports::score::Reference;
@@ -98,8 +99,7 @@ pub fn recordings(folder: &Path, quick: bool) -> Result<Part> {
     let entries = std::fs::read_dir(folder).map_err(unread)?;
     let mut paths =
         entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>().map_err(unread)?;
-    let is_sound = |ending: &str| SOUNDS.iter().any(|known| ending.eq_ignore_ascii_case(known));
-    paths.retain(|path| path.extension().and_then(|ending| ending.to_str()).is_some_and(is_sound));
+    paths.retain(|path| has_end(path, &SOUNDS));
     paths.sort();
     paths.truncate(if quick { 3 } else { usize::MAX });
     let mut snr_db = Vec::new();
@@ -123,23 +123,18 @@ pub fn recordings(folder: &Path, quick: bool) -> Result<Part> {
     Ok(part)
 }
 
-type Make = dyn Fn(u64) -> std::result::Result<Surface, asperity::files::FileError>;
-
 /// Both observers' tables and controls.
 fn judged(
     part: &mut Part,
     what: &str,
     labels: &[&str],
-    of: &[Box<Make>],
+    of: &[Make],
     quick: bool,
     conditions: &[(&'static str, &[usize])],
     placed: bool,
 ) -> Result<Vec<Table>> {
-    let (learnt, count) = (16, if quick { 4 } else { 16 });
-    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
-    let pascals = plates::pascals()?;
-    let known = plates::lot(&surfaces, (150_000, learnt), pascals, placed)?;
-    let asked = plates::lot(&surfaces, (190_000, count), pascals, placed)?;
+    let count = if quick { 4 } else { 16 };
+    let [known, asked] = plates::lots(of, count, placed)?;
     let tables = plates::judge(&known, &asked, conditions);
     let chance = 1.0 / labels.len() as f64;
     let two_se = 2.0 * (chance * (1.0 - chance) / (labels.len() as f64 * count as f64)).sqrt();
@@ -182,7 +177,7 @@ fn judged(
 /// Six plates by touch, by ear and by both.
 pub fn six_plates(quick: bool) -> Result<Part> {
     let mut part = Part::default();
-    let of: Vec<Box<Make>> = PLATES.iter().map(|name| Box::new(move |_| plates::plate(name)) as _).collect();
+    let of = plates::six_plates();
     let tables = judged(&mut part, "six plates", &PLATES, &of, quick, &CONDITIONS, true)?;
     for table in &tables {
         let name = format!("six plates by {}, {} observer", table.condition, table.observer);
@@ -208,10 +203,7 @@ pub fn six_plates(quick: bool) -> Result<Part> {
 pub fn seven_materials(quick: bool) -> Result<Part> {
     let mut part = Part::default();
     let names = SolidMaterial::SEVEN.map(SolidMaterial::name);
-    let of: Vec<Box<Make>> = SolidMaterial::SEVEN
-        .iter()
-        .map(|one| Box::new(move |seed| plates::material(*one, seed)) as _)
-        .collect();
+    let of = plates::seven_materials();
     let tables = judged(&mut part, "seven materials", &names, &of, quick, &CONDITIONS[..1], false)?;
     for table in &tables {
         let name = format!("seven materials by touch, {} observer: mean", table.observer);
@@ -232,41 +224,27 @@ pub fn growth_laws(_quick: bool) -> Result<Part> {
     let command = "asperity stroke MAP -o DIR --speed V --force N";
     let stylus = growth("stylus", Quantity::Acceleration, 0.5)?;
     let finger = growth("fingertip", Quantity::Acceleration, 0.5)?;
-    part.row(
-        "growth, stylus: exponent of speed",
-        stylus.speed_exponent,
-        [Some(0.72), Some(1.23)],
-        ("0.96, each 0.72–1.23", HATT, command),
-    );
-    part.row(
-        "growth, stylus: exponent of force",
-        stylus.force_exponent,
-        [Some(0.02), Some(0.40)],
-        ("0.21, each 0.02–0.40", HATT, command),
-    );
-    part.row(
-        "growth, stylus: level at 0.12 m/s and 1.5 N, m/s²",
-        stylus.level,
-        [Some(0.37), Some(4.7)],
-        ("1.07, 0.37–4.7", HATT, command),
-    );
+    let [fabric, textures] = ["published fingers on fabric", "published fingers, eight textures"];
+    for (of, ours, [low, high], anchor, source) in [
+        ("stylus: exponent of speed", stylus.speed_exponent, [0.72, 1.23], "0.96, each 0.72–1.23", HATT),
+        ("stylus: exponent of force", stylus.force_exponent, [0.02, 0.40], "0.21, each 0.02–0.40", HATT),
+        ("stylus: level at 0.12 m/s and 1.5 N, m/s²", stylus.level, [0.37, 4.7], "1.07, 0.37–4.7", HATT),
+        (
+            "fingertip: exponent of speed",
+            finger.speed_exponent,
+            [0.5, 1.4],
+            "0.70–0.90 on four fabrics",
+            fabric,
+        ),
+        ("fingertip: exponent of force", finger.force_exponent, [0.0, 0.5], "above 0", textures),
+    ] {
+        part.row(format!("growth, {of}"), ours, [Some(low), Some(high)], (anchor, source, command));
+    }
     let ground = (abrasive::abrasive(141e-6).map_err(CliError::from_error)?, abrasive::SIDE_M);
     let level = rms("stylus", Quantity::Acceleration, ground, 0.12, 1.5)?;
     let off_db = 20.0 * (level / abrasive::MEASURED_M_S2[0]).log10() + abrasive::FRICTION_DB;
     let anchor = ("6.5 m/s², of which friction is 4 dB", HATT, command);
     part.row("stylus on abrasive of grit 100: level, dB", off_db, [Some(-9.0), Some(8.0)], anchor);
-    part.row(
-        "growth, fingertip: exponent of speed",
-        finger.speed_exponent,
-        [Some(0.5), Some(1.4)],
-        ("0.70–0.90 on four fabrics", "published fingers on fabric", command),
-    );
-    part.row(
-        "growth, fingertip: exponent of force",
-        finger.force_exponent,
-        [Some(0.0), Some(0.5)],
-        ("above 0", "published fingers, eight textures", command),
-    );
     Ok(part)
 }
 
@@ -331,8 +309,7 @@ pub fn sources(quick: bool) -> Result<Part> {
 pub fn speed(quick: bool) -> Result<Part> {
     let mut part = Part::default();
     let load = Load { contacts: 10, bodies: 10, modes_per_body: 100, lift: false };
-    let refused = || CliError::new("speed", "the scene cannot be built", "please report it");
-    let mut bench = Bench::new(load, Config::default()).ok_or_else(refused)?;
+    let mut bench = Bench::new(load, Config::default())?;
     let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
     let pieces = if quick { 600 } else { 3000 };
     let mut times: Vec<f64> = (0..pieces).map(|_| bench.blocks(8, &mut haptic, &mut audio)).collect();

@@ -176,11 +176,7 @@ pub fn make(
     }
     drop(progress);
     outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&in_words(&report, &options.output));
-    Ok(())
+    output::say_report(&report, options.json, || in_words(&report, &options.output))
 }
 
 /// Result of a sound's first rendering.

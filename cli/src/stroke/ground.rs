@@ -1,9 +1,11 @@
 //! Ground: what is stroked, as a scene.
 
 use super::Options;
+use crate::arguments::plain;
 use crate::error::CliError;
+use crate::paths::has_end;
 use crate::sounds::{Folder, Told, stem, with_absolute_paths};
-use crate::strike::{has_end, slowest_per_s};
+use crate::strike::slowest_per_s;
 use crate::texture::from_photo;
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::{Material, ModalModel, PROBE_PRESETS, Wrap};
@@ -85,7 +87,7 @@ impl Ground {
         let report = from_photo::make(&from_photo::Options {
             width_m: options.width_m,
             relief_m: options.relief_m,
-            ..from_photo::Options::plain(options.what.clone(), maps.clone())
+            ..plain(&options.what, &maps)?
         })?;
         let assumed =
             vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];

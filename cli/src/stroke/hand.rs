@@ -8,13 +8,16 @@
 //! ```
 //! Circles and sines have whole turns in the time: of all that fit onto the surface the widest.
 
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine, LogTouching};
+use crate::scene_log::rounded;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine};
 use asperity_dsp::rng::Rng;
 use std::f64::consts::TAU;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+/// Digits behind the point in its log.
+const DIGITS: i32 = 9;
 /// Reports a second.
 const REPORTS_HZ: f64 = 120.0;
 /// Speed at which the finger lands, m/s.
@@ -100,29 +103,22 @@ impl Hand {
         let phases = [TAU * within(0.5), 1.0 + TAU * within(0.5)];
         let total_s = self.settled_s.unwrap_or(0.0) + self.seconds;
         let reports = (total_s * REPORTS_HZ).ceil().max(1.0) as u32;
-        let mut lines = Vec::new();
-        for report in 0..reports {
+        let samples = (0..reports).map(|report| {
             let t = f64::from(report) / REPORTS_HZ;
             let (place_m, velocity_m_s) = self.at(t);
-            let uv = [0, 1].map(|axis| rounded((place_m[axis] + shift_m[axis]) / self.extent_m[axis]));
+            let uv =
+                [0, 1].map(|axis| rounded((place_m[axis] + shift_m[axis]) / self.extent_m[axis], DIGITS));
             let sample = ContactSample {
                 uv,
-                velocity_m_s: Some(velocity_m_s.map(rounded)),
-                normal_force_n: rounded(self.force_n * self.pressing(t, total_s, phases)),
+                velocity_m_s: Some(velocity_m_s.map(|v| rounded(v, DIGITS))),
+                normal_force_n: rounded(self.force_n * self.pressing(t, total_s, phases), DIGITS),
                 closing_m_s: if report == 0 { LANDING_M_S } else { 0.0 },
                 ..ContactSample::default()
             };
-            let event = if report == 0 { self.begin(sample) } else { LogEvent::moved(1, sample) };
-            lines.push(LogLine { t: rounded(t), event });
-        }
-        lines.push(LogLine { t: total_s, event: LogEvent::End { contact: 1 } });
-        ContactLog { lines }
-    }
-
-    fn begin(&self, sample: ContactSample) -> LogEvent {
-        let hand = LogHand { actuator: Some(0), probe: self.probe.clone(), ..LogHand::default() };
-        let touching = LogTouching { surface: self.surface.clone(), importance: None, hand };
-        LogEvent::Begin { contact: 1, touching, sample }
+            (rounded(t, DIGITS), sample)
+        });
+        let hand = LogHand { probe: self.probe.clone(), ..LogHand::felt_by(0) };
+        ContactLog { lines: LogLine::contact(1, (&self.surface, hand), samples, total_s) }
     }
 
     /// Share of the force: it lands and lifts softly and wanders a little; in a loop it stays.
@@ -176,14 +172,10 @@ impl Hand {
     }
 }
 
-/// Nine digits behind the point, for short lines.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity::files::contact_log::LogEvent;
 
     fn hand(path: Path, runs_on: bool) -> Hand {
         Hand {

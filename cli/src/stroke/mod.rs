@@ -9,9 +9,9 @@
 mod ground;
 mod hand;
 
+use crate::arguments::positive;
 use crate::error::CliError;
 use crate::sounds::{self, Folder, Loop, MOST_TAIL_S, Sound, short, take_suffix};
-use crate::strike::positive;
 use asperity::files::contact_log::ContactLog;
 use clap::Args;
 use ground::Ground;

@@ -84,11 +84,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         answers.extend(read(path)?);
     }
     let report = report(&answers, options)?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&table::lines(&report));
-    Ok(())
+    output::say_report(&report, options.json, || table::lines(&report))
 }
 
 fn read(path: &Path) -> Result<Vec<Answer>, CliError> {
@@ -123,21 +119,9 @@ fn read(path: &Path) -> Result<Vec<Answer>, CliError> {
 
 /// Fields of a line of CSV.
 fn fields(line: &str) -> Vec<String> {
-    let mut fields = vec![String::new()];
-    let mut is_quoted = false;
-    let mut characters = line.trim_end_matches('\r').chars().peekable();
-    while let Some(c) = characters.next() {
-        match c {
-            '"' if is_quoted && characters.peek() == Some(&'"') => {
-                characters.next();
-                fields.last_mut().unwrap_or(&mut String::new()).push('"');
-            }
-            '"' => is_quoted = !is_quoted,
-            ',' if !is_quoted => fields.push(String::new()),
-            c => fields.last_mut().unwrap_or(&mut String::new()).push(c),
-        }
-    }
-    fields
+    let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+    let row = rows.records().next().and_then(Result::ok).unwrap_or_default();
+    row.iter().map(str::to_owned).collect()
 }
 
 fn report(answers: &[Answer], options: &Options) -> Result<Report, CliError> {

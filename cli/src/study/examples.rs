@@ -123,9 +123,7 @@ impl Example<'_> {
         toml: &str,
         more: &str,
     ) -> Result<(), CliError> {
-        let mut lines = Vec::new();
-        strokes(seed, side_m).write(&mut lines).map_err(|error| CliError::write(self.folder, &error))?;
-        self.file(&format!("{file}.jsonl"), &lines)?;
+        self.file(&format!("{file}.jsonl"), strokes(seed, side_m).to_jsonl().as_bytes())?;
         self.file(
             &format!("{file}.toml"),
             format!("contacts = \"{file}.jsonl\"\nseed = {seed}\n{toml}").as_bytes(),
@@ -268,7 +266,6 @@ fn strokes(seed: u64, side_m: f64) -> asperity::files::contact_log::ContactLog {
     let finger = Finger {
         contact: 1,
         surface: "plate",
-        actuator: 0,
         extent_m: [side_m; 2],
         start_s: 0.1,
         normal_force_n: near(0.6),

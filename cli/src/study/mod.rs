@@ -89,7 +89,6 @@ fn page(study: &Path, folder: &Path, options: &Options) -> Result<(), CliError> 
     let page = folder.join("index.html");
     outputs.write(&page, html.as_bytes())?;
     outputs.commit()?;
-    warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    output::say(&format!("wrote {}", page.display()));
+    output::say(&format!("wrote {}{}", page.display(), output::warned(&warnings)));
     if options.serve { serve::serve(folder, options.port) } else { Ok(()) }
 }

@@ -1,5 +1,6 @@
 //! `asperity texture analyze IMAGE`: how rough a picture is, and what pattern repeats in it.
 
+use crate::arguments::{Words, one_of};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
@@ -27,8 +28,8 @@ pub struct AnalyzeArgs {
     #[arg(long, value_enum, default_value_t = LatticeMethod::Sweep)]
     pub lattice_method: LatticeMethod,
     /// Distortion that the document's method averages
-    #[arg(long, value_enum, default_value_t = DistortionKind::Squared)]
-    pub distortion: DistortionKind,
+    #[arg(long, default_value = "squared", value_parser = one_of(DISTORTIONS))]
+    pub distortion: Distortion,
     /// Share of the median distortion up to which the document's method believes a minimum, 0–1
     #[arg(long, default_value_t = 0.5, value_parser = share)]
     pub threshold: f64,
@@ -51,26 +52,18 @@ pub enum LatticeMethod {
 }
 
 /// Two distortions that a lattice may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DistortionKind {
-    /// Mean square of differences
-    Squared,
-    /// Mean size of differences
-    Absolute,
-}
+const DISTORTIONS: Words<Distortion, 2> = [
+    ("squared", "Mean square of differences", Distortion::Squared),
+    ("absolute", "Mean size of differences", Distortion::Absolute),
+];
 
 impl AnalyzeArgs {
     /// The lattice by the method asked for.
     fn lattice(&self, picture: &Raster) -> Option<Lattice> {
-        let distortion = match self.distortion {
-            DistortionKind::Squared => Distortion::Squared,
-            DistortionKind::Absolute => Distortion::Absolute,
-        };
+        let search = DocumentSearch { distortion: self.distortion, threshold: self.threshold };
         match self.lattice_method {
             LatticeMethod::Sweep => find_lattice(picture),
-            LatticeMethod::Document => {
-                document_lattice(picture, &DocumentSearch { distortion, threshold: self.threshold })
-            }
+            LatticeMethod::Document => document_lattice(picture, &search),
         }
     }
 }
@@ -117,12 +110,7 @@ struct Pattern {
 /// When the picture cannot be read, is smaller than 64 × 64 or has no relief.
 pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
     let analysis = analyze(arguments)?;
-    if arguments.json {
-        output::say_json(&analysis)
-    } else {
-        output::say(&text(&analysis));
-        Ok(())
-    }
+    output::say_report(&analysis, arguments.json, || text(&analysis))
 }
 
 /// Reading, dimensions, lattice, pattern: what the progress bar counts.
@@ -235,10 +223,7 @@ fn text(analysis: &Analysis) -> String {
         }
         _ => lines += &without_lattice(analysis.frieze.as_ref()),
     }
-    for warning in &analysis.warnings {
-        let _ = write!(lines, "\nwarning: {warning}");
-    }
-    lines
+    lines + &output::warned(&analysis.warnings)
 }
 
 /// Pattern along one direction, or a remark that one of few repeats would not be seen.

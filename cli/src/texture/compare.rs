@@ -91,11 +91,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         metamers: matched(Method::Iterated(options.iterations), 2)?,
     };
     drop(progress);
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&in_words(&report));
-    Ok(())
+    output::say_report(&report, options.json, || in_words(&report))
 }
 
 /// The first map and the others made to feel like it.

@@ -2,6 +2,7 @@
 
 use super::object::{ObjectOptions, SizeMm};
 use super::{channel, positive, refused};
+use crate::arguments::{Words, one_of, word_of};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity_pictures::from_photo::TEXEL_M;
@@ -9,7 +10,7 @@ use asperity_pictures::gradient_field::Derivative;
 use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_surface::image_io::{self, Channel};
 use asperity_surface::raster::Raster;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -23,11 +24,11 @@ pub struct Options {
     #[arg(short, long = "output", value_name = "OUT.png")]
     pub output: PathBuf,
     /// Which way green points; found out unless given
-    #[arg(long, value_name = "WAY")]
-    pub green: Option<GreenName>,
+    #[arg(long, value_name = "WAY", value_parser = one_of(GREENS))]
+    pub green: Option<Green>,
     /// Operator that took the map's slopes from heights; estimated by default
-    #[arg(long, value_name = "HOW")]
-    pub derivative: Option<DerivativeName>,
+    #[arg(long, value_name = "HOW", value_parser = one_of(DERIVATIVES))]
+    pub derivative: Option<Derivative>,
     /// Take x from alpha: DXT5nm, where red is blank
     #[arg(long)]
     pub x_in_alpha: bool,
@@ -46,68 +47,25 @@ pub struct Options {
 }
 
 /// Conventions of the green channel.
-#[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum GreenName {
-    /// Green brightens towards slopes facing up the image.
-    #[value(name = "opengl")]
-    OpenGl,
-    /// Green brightens towards slopes facing down the image.
-    #[value(name = "directx")]
-    DirectX,
-}
-
-impl GreenName {
-    fn in_words(self) -> &'static str {
-        match self {
-            Self::OpenGl => "OpenGL's",
-            Self::DirectX => "DirectX's",
-        }
-    }
-}
-
+const GREENS: Words<Green, 2> = [
+    ("opengl", "Green brightens towards slopes facing up the image", Green::OpenGl),
+    ("directx", "Green brightens towards slopes facing down the image", Green::DirectX),
+];
 /// Ways of taking slopes from heights.
-#[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DerivativeName {
-    /// The true derivative: normals baked from geometry.
-    Exact,
-    /// Half the difference of the texels on both sides.
-    Central,
-    /// Central difference averaged across (¼, ½, ¼): many height-to-normal converters.
-    Sobel,
-    /// Half way between the first two: what is taken when the map does not tell them apart.
-    ExactOrCentral,
-}
-
-impl DerivativeName {
-    fn in_words(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Central => "central",
-            Self::Sobel => "Sobel's",
-            Self::ExactOrCentral => "exact or central",
-        }
-    }
-
-    fn derivative(self) -> Derivative {
-        match self {
-            Self::Exact => Derivative::Exact,
-            Self::Central => Derivative::Central,
-            Self::Sobel => Derivative::Sobel,
-            Self::ExactOrCentral => Derivative::ExactOrCentral,
-        }
-    }
-
-    fn of(derivative: Derivative) -> Self {
-        match derivative {
-            Derivative::Exact => Self::Exact,
-            Derivative::Central => Self::Central,
-            Derivative::Sobel => Self::Sobel,
-            Derivative::ExactOrCentral => Self::ExactOrCentral,
-        }
-    }
-}
+const DERIVATIVES: Words<Derivative, 4> = [
+    ("exact", "The true derivative: normals baked from geometry", Derivative::Exact),
+    ("central", "Half the difference of the texels on both sides", Derivative::Central),
+    (
+        "sobel",
+        "Central difference averaged across (¼, ½, ¼): many height-to-normal converters",
+        Derivative::Sobel,
+    ),
+    (
+        "exact-or-central",
+        "Half way between the first two: what is taken when the map does not tell them apart",
+        Derivative::ExactOrCentral,
+    ),
+];
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -119,9 +77,9 @@ struct Report {
     /// Width, where it is given or an object is written.
     #[serde(flatten)]
     size: Option<SizeMm>,
-    green: GreenName,
+    green: &'static str,
     green_is_certain: bool,
-    derivative: DerivativeName,
+    derivative: &'static str,
     /// True where it was given or found in the map.
     derivative_is_certain: bool,
     tileable: bool,
@@ -148,12 +106,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         false => channel(&options.normals, Channel::B)?,
     };
     let settings = NormalMapOptions {
-        green: match options.green {
-            None => Green::Detect,
-            Some(GreenName::OpenGl) => Green::OpenGl,
-            Some(GreenName::DirectX) => Green::DirectX,
-        },
-        derivative: options.derivative.map(DerivativeName::derivative),
+        green: options.green.unwrap_or(Green::Detect),
+        derivative: options.derivative,
         keep_tilt: options.keep_tilt,
         ..NormalMapOptions::default()
     };
@@ -186,9 +140,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         relief_per_px,
         relief_m: texel_m.map(|texel_m| relief_per_px * texel_m),
         size,
-        green: if found.green == Green::DirectX { GreenName::DirectX } else { GreenName::OpenGl },
+        green: word_of(&GREENS, found.green),
         green_is_certain: found.green_is_certain,
-        derivative: DerivativeName::of(found.derivative),
+        derivative: word_of(&DERIVATIVES, found.derivative),
         derivative_is_certain: found.derivative_is_certain,
         tileable: found.tileable,
         walls: found.walls,
@@ -196,29 +150,26 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         warnings,
         files: outputs.commit()?,
     };
-    if options.json {
-        return output::say_json(&report);
-    }
-    if let Some(SizeMm { width_mm, height_mm, relief_mm, .. }) = report.size {
-        output::say(&format!("{width_mm:.2} × {height_mm:.2} mm, relief {relief_mm:.3} mm"));
-    }
-    for warning in &report.warnings {
-        output::say(&format!("warning: {warning}"));
-    }
-    let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
-    output::say(&format!(
-        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}; {}{}\nwrote {}",
-        report.width,
-        report.height,
-        report.green.in_words(),
-        sure(report.green_is_certain),
-        report.derivative.in_words(),
-        sure(report.derivative_is_certain),
-        if report.tileable { "tiles" } else { "does not tile" },
-        if report.walls > 0.0 { "; flat but for walls, whose short waves are lowered" } else { "" },
-        options.output.display()
-    ));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let size = report.size.map_or(String::new(), |size| {
+            let SizeMm { width_mm, height_mm, relief_mm, .. } = size;
+            format!("{width_mm:.2} × {height_mm:.2} mm, relief {relief_mm:.3} mm\n")
+        });
+        let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
+        format!(
+            "{size}{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}; {}{}{}\nwrote {}",
+            report.width,
+            report.height,
+            report.green,
+            sure(report.green_is_certain),
+            report.derivative,
+            sure(report.derivative_is_certain),
+            if report.tileable { "tiles" } else { "does not tile" },
+            if report.walls > 0.0 { "; flat but for walls, whose short waves are lowered" } else { "" },
+            output::warned(&report.warnings),
+            options.output.display()
+        )
+    })
 }
 
 fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<String> {

@@ -7,6 +7,7 @@ mod scene;
 
 use super::object::ObjectOptions;
 use super::{bar, positive, refused};
+use crate::arguments::{Words, one_of, three};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
@@ -19,7 +20,7 @@ use asperity_pictures::photograph::{Photograph, load_reduced_photograph};
 use asperity_pictures::shape_from_shading::{Method, STEPS};
 use asperity_surface::image_io;
 use asperity_surface::raster::Raster;
-use clap::{Args, ValueEnum};
+use clap::Args;
 pub use report::Report;
 use report::Size;
 use std::path::{Path, PathBuf};
@@ -43,8 +44,8 @@ pub struct Options {
     #[arg(long, value_name = "X,Y,Z", value_parser = light, allow_hyphen_values = true)]
     pub light: Option<Light>,
     /// Method that finds heights; by the light unless given
-    #[arg(long, value_enum)]
-    pub method: Option<MethodName>,
+    #[arg(long, value_parser = one_of(METHODS))]
+    pub method: Option<Method>,
     /// Turn the heights over: what is bright lies deep
     #[arg(long)]
     pub bright_is_deep: bool,
@@ -79,23 +80,19 @@ pub struct Options {
 }
 
 /// Ways to find heights.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum MethodName {
-    /// Slopes that fit the shading and belong to a surface.
-    Integrable,
-    /// Tsai and Shah (1994), for comparison: its heights are no relief.
-    TsaiShah,
-    /// Bright is high: for light from everywhere.
-    DarkIsDeep,
-    /// Relief on a flat ground, lit from the viewer's direction.
-    FlatGround,
-}
+const METHODS: Words<Method, 4> = [
+    ("integrable", "Slopes that fit the shading and belong to a surface", Method::Integrable(STEPS)),
+    (
+        "tsai-shah",
+        "Tsai and Shah (1994), for comparison: its heights are no relief",
+        Method::TsaiShah(TSAI_SHAH_STEPS),
+    ),
+    ("dark-is-deep", "Bright is high: for light from everywhere", Method::DarkIsDeep),
+    ("flat-ground", "Relief on a flat ground, lit from the viewer's direction", Method::FlatGround),
+];
 
 fn light(text: &str) -> Result<Light, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers = numbers.ok().and_then(|n| <[f64; 3]>::try_from(n).ok());
-    let numbers = numbers.ok_or("must be three numbers, such as -0.5,-0.5,0.7")?;
-    Light::new(numbers).map_err(|error| error.to_string())
+    Light::new(three(text, ", such as -0.5,-0.5,0.7")?).map_err(|error| error.to_string())
 }
 
 /// Files that every run writes, or may write: none of them can be the photograph.
@@ -118,27 +115,6 @@ const WRITTEN: [&str; 15] = [
 ];
 
 impl Options {
-    /// The options of `asperity texture from-photo PHOTO -o DIR`.
-    #[must_use]
-    pub fn plain(photo: PathBuf, output: PathBuf) -> Self {
-        Self {
-            photo,
-            output,
-            light: None,
-            method: None,
-            bright_is_deep: false,
-            width_m: None,
-            relief_m: None,
-            calibration: None,
-            known: None,
-            known_relief_m: None,
-            exaggerate: 1.0,
-            variants: false,
-            object: ObjectOptions::default(),
-            json: false,
-        }
-    }
-
     /// Tests whether no option gives the photograph's width.
     fn assumes_width(&self) -> bool {
         self.object.width_mm.is_none() && self.width_m.is_none()
@@ -151,11 +127,7 @@ impl Options {
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let report = make(options)?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&report.in_words(options));
-    Ok(())
+    output::say_report(&report, options.json, || report.in_words(options))
 }
 
 /// Makes the maps and the scene; `stroke` uses it too.
@@ -170,12 +142,7 @@ pub fn make(options: &Options) -> Result<Report, CliError> {
     let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / photograph.width_px as f64);
     let mut settings = PhotoOptions {
         light: options.light,
-        method: options.method.map(|name| match name {
-            MethodName::Integrable => Method::Integrable(STEPS),
-            MethodName::TsaiShah => Method::TsaiShah(TSAI_SHAH_STEPS),
-            MethodName::DarkIsDeep => Method::DarkIsDeep,
-            MethodName::FlatGround => Method::FlatGround,
-        }),
+        method: options.method,
         bright_is_deep: options.bright_is_deep,
         texel_m,
         relief_m: options.relief_m,
@@ -256,16 +223,14 @@ fn write(
         let text = scene::of_cell(surface, cell, size_m, full_scale_m);
         text_file(&mut outputs, "scene_lattice.toml", &text)?;
     }
-    text_file(&mut outputs, "stroke.jsonl", &scene::stroke(size_m))?;
-    text_file(&mut outputs, "surface.modes.json", &scene::modes()?)?;
+    text_file(&mut outputs, "stroke.jsonl", &scene::stroke(size_m).to_jsonl())?;
+    text_file(&mut outputs, "surface.modes.json", &scene::modes().to_json())?;
     let heights_m = surface.displacement.map(|grey| grey * surface.relief_m);
     options.object.write(&mut outputs, &heights_m, size.texel_m)?;
     files.extend(options.object.stl.as_ref().map(|path| path.display().to_string()));
     files.push("report.json".to_owned());
     let report = Report::new(options, surface, size, start.elapsed().as_secs_f64(), files);
-    let text = serde_json::to_string_pretty(&report)
-        .map_err(|error| CliError::new("report.json", error, "please report it with the photograph"))?;
-    outputs.write(&folder.join("report.json"), text.as_bytes())?;
+    outputs.write_json(&folder.join("report.json"), &report)?;
     outputs.commit()?;
     Ok(report)
 }
@@ -273,6 +238,7 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arguments::plain;
     use crate::render;
     use std::path::Path;
 
@@ -283,7 +249,7 @@ mod tests {
         let tiles = Raster::from_fn(96, 80, |x, y| if x % 16 < 2 || y % 16 < 2 { 0.2 } else { 0.7 });
         image_io::save_gray16(&photo, &tiles).unwrap();
         let out = folder.path().join("out");
-        let options = Options { variants: true, ..Options::plain(photo, out.clone()) };
+        let options = Options { variants: true, ..plain(&photo, &out).unwrap() };
         run(&options).unwrap();
         let report: serde_json::Value =
             serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
@@ -312,10 +278,10 @@ mod tests {
         image_io::save_gray16(&photo, &Raster::from_fn(96, 80, |x, y| ((x * 7 + y * 13) % 31) as f64 / 31.0))
             .unwrap();
         let out = folder.path().join("wall");
-        let assumed = Options::plain(photo.clone(), out.clone());
+        let assumed: Options = plain(&photo, &out).unwrap();
         let words = make(&assumed).unwrap().in_words(&assumed);
         assert!(words.starts_with("taken to be 15 mm wide (--width-m says another width);"), "{words}");
-        let told = Options { width_m: Some(0.5), ..Options::plain(photo, out) };
+        let told = Options { width_m: Some(0.5), ..plain(&photo, &out).unwrap() };
         let words = make(&told).unwrap().in_words(&told);
         assert!(words.starts_with("500 mm wide;"), "{words}");
     }
@@ -348,24 +314,7 @@ mod tests {
 
     /// Peak of what is felt, as a part of full scale.
     fn render_scene(scene: &Path, stem: &Path) -> f64 {
-        let options = render::Options {
-            scene: scene.to_owned(),
-            output: stem.to_owned(),
-            rate: None,
-            block: 256,
-            seed: None,
-            preset: asperity::Preset::Default,
-            integrator: None,
-            path: None,
-            trace: false,
-            force: false,
-            force_rate: 1000.0,
-            kernel: None,
-            threads: 1,
-            port: None,
-            plot: false,
-            json: false,
-        };
+        let options: render::Options = plain(scene, stem).unwrap();
         let report = render::render(&options).unwrap();
         assert!(report.haptic_peak[0] > 0.0 && report.audio_peak > 0.0);
         assert_eq!(report.quarantined + report.dropped, 0);

@@ -3,6 +3,7 @@
 
 use super::object::{ObjectOptions, SizeMm};
 use super::{bar, grey, positive, refused};
+use crate::arguments::{Words, one_of};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity_dsp::DesignError;
@@ -55,8 +56,8 @@ pub struct Options {
     #[arg(long, value_enum, default_value_t = MethodName::Iterated)]
     pub method: MethodName,
     /// Tiling of the maps
-    #[arg(long, value_enum, default_value_t = BordersName::Detect)]
-    pub borders: BordersName,
+    #[arg(long, default_value = "detect", value_parser = one_of(BORDERS))]
+    pub borders: Borders,
     /// Size of the original's texels, mm
     #[arg(long, value_name = "MM", value_parser = positive, requires = "reference_mm_per_px")]
     pub mm_per_px: Option<f64>,
@@ -87,15 +88,11 @@ pub enum MethodName {
 }
 
 /// Knowledge about the borders.
-#[derive(Debug, Clone, Copy, ValueEnum, PartialEq)]
-pub enum BordersName {
-    /// Look at the seams.
-    Detect,
-    /// The maps tile.
-    Periodic,
-    /// They do not.
-    Smooth,
-}
+const BORDERS: Words<Borders, 3> = [
+    ("detect", "Look at the seams", Borders::Detect),
+    ("periodic", "The maps tile", Borders::Periodic),
+    ("smooth", "They do not", Borders::Smooth),
+];
 
 #[derive(Debug, Serialize)]
 struct Band {
@@ -175,11 +172,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let mut report = report(options, &made, file, SizeMm::of(&heights_m, texel_m));
     report.seconds = seconds;
     report.files = outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&in_words(options, &report));
-    Ok(())
+    output::say_report(&report, options.json, || in_words(options, &report))
 }
 
 fn settings(options: &Options) -> MetamerOptions {
@@ -191,11 +184,7 @@ fn settings(options: &Options) -> MetamerOptions {
             MethodName::SinglePass => Method::SinglePass,
             MethodName::Spectrum => Method::Spectrum,
         },
-        borders: match options.borders {
-            BordersName::Detect => Borders::Detect,
-            BordersName::Periodic => Borders::Periodic,
-            BordersName::Smooth => Borders::Smooth,
-        },
+        borders: options.borders,
         scale: match (options.mm_per_px, options.reference_mm_per_px) {
             (Some(ours), Some(theirs)) => ours / theirs,
             _ => 1.0,

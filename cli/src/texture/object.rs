@@ -26,12 +26,6 @@ pub struct ObjectOptions {
     pub width_mm: Option<f64>,
 }
 
-impl Default for ObjectOptions {
-    fn default() -> Self {
-        Self { stl: None, base_mm: BASE_MM, width_mm: None }
-    }
-}
-
 /// The surface in millimetres.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SizeMm {

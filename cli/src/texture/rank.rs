@@ -3,6 +3,7 @@
 use super::{grey, positive};
 use crate::error::CliError;
 use crate::output;
+use crate::paths::has_end;
 use crate::progress::Progress;
 use asperity_evidence::likeness::Impression;
 use clap::Args;
@@ -84,21 +85,17 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let &Options { strokes, width_m, relief_m, .. } = options;
     let (original, folder) = (options.original.clone(), options.folder.clone());
     let report = Report { original, folder, strokes, width_m, relief_m, ranking, warnings };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "taken to be {} mm wide and {} mm from black to white (--width-m, --relief-m); distances are d′ of one stroke: 1 is \
-         about just noticeable",
-        1e3 * width_m,
-        1e3 * relief_m
-    ));
-    report
-        .ranking
-        .iter()
-        .for_each(|Ranked { file, distance }| output::say(&format!("{distance:8.2}  {file}")));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        let rows = report.ranking.iter().map(|Ranked { file, distance }| format!("\n{distance:8.2}  {file}"));
+        format!(
+            "taken to be {} mm wide and {} mm from black to white (--width-m, --relief-m); distances are d′ of one stroke: 1 is \
+             about just noticeable{}{}",
+            1e3 * width_m,
+            1e3 * relief_m,
+            rows.collect::<String>(),
+            output::warned(&report.warnings)
+        )
+    })
 }
 
 /// Names of the pictures in a folder, in order.
@@ -107,14 +104,8 @@ fn pictures(folder: &Path) -> Result<Vec<String>, CliError> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
-        let is_picture = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)));
-        if let (true, Some(name)) =
-            (is_picture && path.is_file(), path.file_name().and_then(|name| name.to_str()))
-        {
-            names.push(name.to_owned());
+        if has_end(&path, &ENDINGS) && path.is_file() {
+            names.extend(path.file_name().and_then(|name| name.to_str()).map(str::to_owned));
         }
     }
     names.sort();

@@ -4,6 +4,7 @@
 use super::bake::bake;
 use super::shader::{Language, of_grating, of_solid};
 use super::{positive, say_preview, write_heights};
+use crate::arguments::{Words, one_of};
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::paths::ends_in;
@@ -11,7 +12,7 @@ use asperity_surface::grating::{GratingKind, GratingParameters};
 use asperity_surface::raster::Raster;
 use asperity_surface::solid_materials::SolidMaterial;
 use asperity_surface::solid_noise::{SolidCut, SolidNoise};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -32,8 +33,8 @@ pub struct Options {
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive)]
     pub width_m: f64,
     /// Shape of a grating
-    #[arg(long, value_enum)]
-    pub kind: Option<Kind>,
+    #[arg(long, value_parser = one_of(KINDS))]
+    pub kind: Option<GratingKind>,
     /// Period of a grating, m [default: 2 mm]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub pitch_m: Option<f64>,
@@ -60,15 +61,11 @@ pub struct Options {
 }
 
 /// Shape of a grating.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Kind {
-    /// Waves
-    Sine,
-    /// Flat ridges
-    Ridges,
-    /// Round dots
-    Dots,
-}
+const KINDS: Words<GratingKind, 3> = [
+    ("sine", "Waves", GratingKind::Sine),
+    ("ridges", "Flat ridges", GratingKind::Ridges),
+    ("dots", "Round dots", GratingKind::Dots),
+];
 
 #[derive(Debug, Serialize)]
 struct ShaderReport {
@@ -132,13 +129,8 @@ fn heights(options: &Options) -> Result<Heights, CliError> {
     let &Options { kind, pitch_m, amplitude_m, duty, .. } = options;
     if options.preset.trim().eq_ignore_ascii_case("grating") {
         let usual = GratingParameters::default();
-        let kind = kind.map_or(usual.kind, |kind| match kind {
-            Kind::Sine => GratingKind::Sine,
-            Kind::Ridges => GratingKind::Ridges,
-            Kind::Dots => GratingKind::Dots,
-        });
         let grating = GratingParameters {
-            kind,
+            kind: kind.unwrap_or(usual.kind),
             pitch_m: pitch_m.unwrap_or(usual.pitch_m),
             amplitude_m: amplitude_m.unwrap_or(usual.amplitude_m),
             duty: duty.unwrap_or(usual.duty),

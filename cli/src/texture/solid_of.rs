@@ -79,20 +79,18 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         warnings: size.warning().into_iter().collect(),
         files: outputs.commit()?,
     };
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&format!(
-        "{:.2} × {:.2} × {:.3} mm, {:.1} mm³, {} triangles: {}",
-        size.width_mm,
-        size.height_mm,
-        options.base_mm + size.relief_mm,
-        report.volume_mm3,
-        report.triangles,
-        options.output.display()
-    ));
-    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
-    Ok(())
+    output::say_report(&report, options.json, || {
+        format!(
+            "{:.2} × {:.2} × {:.3} mm, {:.1} mm³, {} triangles: {}{}",
+            size.width_mm,
+            size.height_mm,
+            options.base_mm + size.relief_mm,
+            report.volume_mm3,
+            report.triangles,
+            options.output.display(),
+            output::warned(&report.warnings)
+        )
+    })
 }
 
 /// The block as glTF: z points up in its mesh, as in STL, and the node turns it to the format's y.

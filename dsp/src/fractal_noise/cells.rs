@@ -2,7 +2,7 @@
 
 use super::Octave;
 use crate::gradient_noise_2d::{Cell, cell_corners};
-use crate::simd::Vector;
+use crate::simd::{Vector, Word};
 
 /// Adding and subtracting it rounds to a whole number, the same everywhere.
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
@@ -29,18 +29,18 @@ pub(super) fn cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V
     let whole = v.add_double(u, to_whole);
     let fraction = v.add_double(v.sub_double(u, v.sub_double(whole, to_whole)), to_fraction);
     // A negative fraction borrows from the index.
-    let borrow = v.add_word(v.high_half(fraction), v.splat_word(FROM_HIGH));
-    Cells { index: v.add_word(v.low_half(whole), borrow), fraction: v.low_half(fraction) }
+    let borrow = v.high_half(fraction) + v.splat_word(FROM_HIGH);
+    Cells { index: v.low_half(whole) + borrow, fraction: v.low_half(fraction) }
 }
 
 /// Sum within ± 2¹⁹: both halves of one.
 #[inline(always)]
 pub(super) fn near_cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V::Word> {
     let sum = v.add_double(u, v.splat_double(TO_FRACTION));
-    Cells { index: v.add_word(v.high_half(sum), v.splat_word(FROM_HIGH)), fraction: v.low_half(sum) }
+    Cells { index: v.high_half(sum) + v.splat_word(FROM_HIGH), fraction: v.low_half(sum) }
 }
 
-impl<W: Copy> Cells<W> {
+impl<W: Word> Cells<W> {
     /// Sums on both counts.
     pub(super) fn at(place: W) -> Self {
         Self { index: place, fraction: place }
@@ -49,7 +49,7 @@ impl<W: Copy> Cells<W> {
     /// Places in the cells of octave `i`, from their centres in 2⁻³² cells.
     #[inline(always)]
     pub(super) fn place<const N: usize, V: Vector<N, Word = W>>(&self, v: V, i: u32, offset: Offset) -> W {
-        v.add_word(v.left(self.fraction, i), v.splat_word(offset.from_centre))
+        (self.fraction << i) + v.splat_word(offset.from_centre)
     }
 
     /// Indices of the cells, given those places.
@@ -61,9 +61,9 @@ impl<W: Copy> Cells<W> {
         offset: Offset,
         from_centre: W,
     ) -> W {
-        let from_fraction = v.right(v.right(self.fraction, 1), 31 - i);
-        let index = v.or(v.left(self.index, i), from_fraction);
-        let index = v.add_word(index, v.splat_word(offset.index));
+        let from_fraction = (self.fraction >> 1) >> (31 - i);
+        let index = (self.index << i) | from_fraction;
+        let index = index + v.splat_word(offset.index);
         // The sum of the fractions has wrapped where it is less than what was added.
         v.add_if_less(index, from_centre, v.splat_word(offset.from_centre))
     }

@@ -23,7 +23,7 @@ pub(super) fn polynomial<const N: usize, V: Vector<N>>(v: V, x: V::Single, c: &[
     let mut terms = c.iter().rev();
     let mut sum = v.splat(terms.next().copied().unwrap_or(0.0));
     for c in terms {
-        sum = v.add(v.splat(*c), v.mul(x, sum));
+        sum = v.splat(*c) + x * sum;
     }
     sum
 }
@@ -37,8 +37,8 @@ pub(super) fn within_0_1<const N: usize, V: Vector<N>>(v: V, x: V::Single) -> V:
 /// Smooth fade from 1 at 4 samples a cell to 0 at 2; exactly 1 above and 0 below.
 #[inline(always)]
 pub(super) fn footprint_weight<const N: usize, V: Vector<N>>(v: V, samples_per_cell: V::Single) -> V::Single {
-    let s = within_0_1(v, v.sub(v.mul(v.splat(0.5), samples_per_cell), v.splat(1.0)));
-    v.mul(v.mul(s, s), v.sub(v.splat(3.0), v.mul(v.splat(2.0), s)))
+    let s = within_0_1(v, v.splat(0.5) * samples_per_cell - v.splat(1.0));
+    s * s * (v.splat(3.0) - v.splat(2.0) * s)
 }
 
 /// Gains that follow from the roughness.
@@ -57,9 +57,9 @@ pub(super) struct Gains<F> {
 pub(super) fn gains<const N: usize, V: Vector<N>>(v: V, roughness: V::Single) -> Gains<V::Single> {
     let roughness = within_0_1(v, roughness);
     let r = polynomial(v, roughness, &OCTAVE_RATIO);
-    let r2 = v.mul(r, r);
+    let r2 = r * r;
     // The finest octave is seven below that of 1.024 mm cells.
-    let finest = v.mul(v.mul(polynomial(v, roughness, &LEVEL), v.mul(r2, r2)), v.mul(r2, r));
+    let finest = polynomial(v, roughness, &LEVEL) * (r2 * r2) * (r2 * r);
     Gains {
         finest,
         coarser: polynomial(v, roughness, &INVERSE_OCTAVE_RATIO),

@@ -86,7 +86,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         Self {
             v,
             slow: slow_octaves(noise, way_m(position_m)),
-            samples_per_metre: v.div(v.splat(1.0), v.add(footprint, v.splat(f32::MIN_POSITIVE))),
+            samples_per_metre: v.splat(1.0) / (footprint + v.splat(f32::MIN_POSITIVE)),
             shortest_footprint_m,
             longest_footprint_m,
         }
@@ -117,9 +117,9 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
             }
             let mut weight = one;
             if !whole {
-                weight = footprint_weight(v, v.mul(v.splat(octave.cell_m), self.samples_per_metre));
+                weight = footprint_weight(v, v.splat(octave.cell_m) * self.samples_per_metre);
             }
-            *fade = v.mul(weight, v.add(one, v.mul(tail_boost, v.sub(one, finer))));
+            *fade = weight * (one + tail_boost * (one - finer));
             finer = weight;
             all_finer = whole;
         }
@@ -145,7 +145,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
             let mut gain = rough.gains.finest;
             for gains in gains.iter_mut().rev() {
                 *gains = gain;
-                gain = v.mul(gain, rough.gains.coarser);
+                gain = gain * rough.gains.coarser;
             }
         }
         let mut sums = [v.splat(0.0); W];
@@ -174,11 +174,11 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
                         (gain, weight) = (gains[i], polynomial(v, rough.lanes, &sets[w].of[i]));
                     }
                     if i >= steady {
-                        weight = v.mul(weight, fades[i]);
+                        weight = weight * fades[i];
                     }
-                    scale = v.mul(gain, weight);
+                    scale = gain * weight;
                 }
-                *sum = v.add(*sum, v.mul(scale, value));
+                *sum = *sum + scale * value;
             }
         }
         sums

@@ -93,7 +93,6 @@ pub struct HertzContact {
     effective_modulus_pa: f64,
     radius_m: f64,
     mass_kg: f64,
-    restitution: f64,
     /// τ at 1 m/s.
     time_at_1_m_s: f64,
 }
@@ -111,16 +110,7 @@ impl HertzContact {
         let ratio = mass_kg * mass_kg / (radius_m * effective_modulus_pa * effective_modulus_pa);
         let time = CONTACT_TIME * libm::pow(ratio, 0.2);
         DesignError::check("contact_time_s", time, "above 0 s and finite", |t| t > 0.0)?;
-        Ok(Self { effective_modulus_pa, radius_m, mass_kg, restitution: 1.0, time_at_1_m_s: time })
-    }
-
-    /// Sets a coefficient of restitution.
-    ///
-    /// # Errors
-    /// When it is not within 0 to 1.
-    pub fn with_restitution(self, restitution: f64) -> Result<Self, DesignError> {
-        let e = DesignError::check("restitution", restitution, "0 to 1", |e| (0.0..=1.0).contains(&e))?;
-        Ok(Self { restitution: e, ..self })
+        Ok(Self { effective_modulus_pa, radius_m, mass_kg, time_at_1_m_s: time })
     }
 
     /// E*, Pa.
@@ -148,22 +138,11 @@ impl HertzContact {
         self.time_at_1_m_s * inverse_fifth_root(speed_m_s)
     }
 
-    /// Impulse m v (1 + e), N·s.
+    /// Impulse 2 m v, N·s.
     #[inline]
     #[must_use]
     pub fn impulse_n_s(&self, speed_m_s: f64) -> f64 {
-        self.mass_kg * speed_m_s * (1.0 + self.restitution)
-    }
-
-    /// Largest force of the pulse, N.
-    #[must_use]
-    pub fn peak_force_n(&self, speed_m_s: f64) -> f64 {
-        let pulse = self.pulse(speed_m_s);
-        if self.restitution == 1.0 {
-            return shape::PEAK * pulse.impulse_n_s / pulse.contact_time_s;
-        }
-        let force_n = |i: u32| pulse.force_n(f64::from(i) / 256.0 * pulse.contact_time_s);
-        (0..256).map(force_n).fold(0.0, f64::max)
+        2.0 * self.mass_kg * speed_m_s
     }
 
     /// The pulse of an impact at `speed_m_s`; a speed that is not above 0 and finite gives no
@@ -172,8 +151,7 @@ impl HertzContact {
     #[must_use]
     pub fn pulse(&self, speed_m_s: f64) -> HertzPulse {
         let speed = if speed_m_s > 0.0 && speed_m_s.is_finite() { speed_m_s } else { 0.0 };
-        let elastic = HertzPulse::elastic(self.impulse_n_s(speed), self.contact_time_s(speed));
-        HertzPulse { restitution: self.restitution, ..elastic }
+        HertzPulse::elastic(self.impulse_n_s(speed), self.contact_time_s(speed))
     }
 }
 

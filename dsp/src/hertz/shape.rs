@@ -5,9 +5,6 @@
 /// most.
 const C: [f64; 5] = [0.191_499_142_6, 2.086_713_228_2, -1.531_633_332_1, 1.514_399_229_6, -0.421_699_986_2];
 
-/// Peak force · contact time / impulse of the elastic pulse.
-pub(super) const PEAK: f64 = 1.839_546_99;
-
 const fn binomial(n: usize, k: usize) -> f64 {
     let (mut b, mut i) = (1.0, 0);
     while i < k {

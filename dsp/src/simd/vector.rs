@@ -5,23 +5,39 @@
 //! every instruction set gives the same bits. All inline into a function that enables the set.
 
 use super::Set;
+use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Shl, Shr, Sub};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f32x16, f64x4, f64x8, i32x8, i32x16, u32x8, u32x16};
+
+/// Several `f32`.
+pub(crate) trait Single:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+}
+
+/// Several `u32`; they are shifted by less than 32 bits.
+pub(crate) trait Word:
+    Copy
+    + Add<Output = Self>
+    + Mul<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Shl<u32, Output = Self>
+    + Shr<u32, Output = Self>
+{
+}
 
 /// An instruction set that works on N numbers at once.
 pub(crate) trait Vector<const N: usize>: Copy {
     /// N `f32`.
-    type Single: Copy;
+    type Single: Single;
     /// N `u32`.
-    type Word: Copy;
+    type Word: Word;
     /// N `f64`.
     type Double: Copy;
 
     fn splat(self, x: f32) -> Self::Single;
-    fn add(self, a: Self::Single, b: Self::Single) -> Self::Single;
-    fn sub(self, a: Self::Single, b: Self::Single) -> Self::Single;
-    fn mul(self, a: Self::Single, b: Self::Single) -> Self::Single;
-    fn div(self, a: Self::Single, b: Self::Single) -> Self::Single;
     /// The smaller one; b if either is no number.
     fn min(self, a: Self::Single, b: Self::Single) -> Self::Single;
     /// The larger one; b if either is no number.
@@ -36,14 +52,6 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn flip(self, x: Self::Single, bits: Self::Word) -> Self::Single;
 
     fn splat_word(self, x: u32) -> Self::Word;
-    fn add_word(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    fn mul_word(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    fn and(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    fn or(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    fn xor(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    /// Shifts by less than 32 bits.
-    fn left(self, a: Self::Word, bits: u32) -> Self::Word;
-    fn right(self, a: Self::Word, bits: u32) -> Self::Word;
     /// a, and 1 more where b < c as signed numbers.
     fn add_if_less(self, a: Self::Word, b: Self::Word, c: Self::Word) -> Self::Word;
     /// The nearest `f32` of signed numbers.
@@ -158,6 +166,8 @@ macro_rules! vector {
         $name:ident, $n:literal, $single:ident, $word:ident, $signed:ident, $double:ident,
         $four:ident, $points:ident, $low:ident, $high:ident
     ) => {
+        impl<S: Set> Single for $single<S> {}
+        impl<S: Set> Word for $word<S> {}
         impl<S: Set> Vector<$n> for $name<S> {
             type Single = $single<S>;
             type Word = $word<S>;
@@ -168,22 +178,6 @@ macro_rules! vector {
             #[inline(always)]
             fn splat(self, x: f32) -> $single<S> {
                 $single::splat(self.0, x)
-            }
-            #[inline(always)]
-            fn add(self, a: $single<S>, b: $single<S>) -> $single<S> {
-                a + b
-            }
-            #[inline(always)]
-            fn sub(self, a: $single<S>, b: $single<S>) -> $single<S> {
-                a - b
-            }
-            #[inline(always)]
-            fn mul(self, a: $single<S>, b: $single<S>) -> $single<S> {
-                a * b
-            }
-            #[inline(always)]
-            fn div(self, a: $single<S>, b: $single<S>) -> $single<S> {
-                a / b
             }
             #[inline(always)]
             fn min(self, a: $single<S>, b: $single<S>) -> $single<S> {
@@ -213,34 +207,6 @@ macro_rules! vector {
             #[inline(always)]
             fn splat_word(self, x: u32) -> $word<S> {
                 $word::splat(self.0, x)
-            }
-            #[inline(always)]
-            fn add_word(self, a: $word<S>, b: $word<S>) -> $word<S> {
-                a + b
-            }
-            #[inline(always)]
-            fn mul_word(self, a: $word<S>, b: $word<S>) -> $word<S> {
-                a * b
-            }
-            #[inline(always)]
-            fn and(self, a: $word<S>, b: $word<S>) -> $word<S> {
-                a & b
-            }
-            #[inline(always)]
-            fn or(self, a: $word<S>, b: $word<S>) -> $word<S> {
-                a | b
-            }
-            #[inline(always)]
-            fn xor(self, a: $word<S>, b: $word<S>) -> $word<S> {
-                a ^ b
-            }
-            #[inline(always)]
-            fn left(self, a: $word<S>, bits: u32) -> $word<S> {
-                a << bits
-            }
-            #[inline(always)]
-            fn right(self, a: $word<S>, bits: u32) -> $word<S> {
-                a >> bits
             }
             #[inline(always)]
             fn add_if_less(self, a: $word<S>, b: $word<S>, c: $word<S>) -> $word<S> {

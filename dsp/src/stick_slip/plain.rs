@@ -151,13 +151,4 @@ impl<'a> RubbedBody<'a> {
         }
         sum
     }
-
-    /// Place that is rubbed, m.
-    #[must_use]
-    pub fn displacement_m(&self) -> f64 {
-        let lanes = |modes: &RubbedModes| -> f64 {
-            modes.phi.iter().zip(&modes.place).map(|(phi, y)| f64::from(phi * y)).sum()
-        };
-        self.modes.iter().map(lanes).sum()
-    }
 }

@@ -211,12 +211,6 @@ impl Trajectory {
         self.sample
     }
 
-    /// The sample of the latest event, so that a contact nobody refreshes can be let go.
-    #[must_use]
-    pub fn latest_event_sample(&self) -> u64 {
-        self.reckoning.sample()
-    }
-
     /// Up to [`STILL_GRID`] samples, none of them beyond the grid.
     fn follow(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
         let filter = &design.filter;

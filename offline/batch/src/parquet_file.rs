@@ -100,7 +100,7 @@ impl<W: Write + Send> Shard<W> {
         numbers(&mut group, &rows, |row| row.stroke.motion.force_n)?;
         numbers(&mut group, &rows, |row| row.stroke.motion.duration_s)?;
         match &rows[0].samples.audio {
-            Sound::F32(_) => lists(&mut group, &rows, |row| match &row.samples.audio {
+            Sound::F32(_) => lists::<FloatType, W>(&mut group, &rows, |row| match &row.samples.audio {
                 Sound::F32(samples) => samples,
                 Sound::Flac(_) => &[],
             })?,
@@ -109,12 +109,12 @@ impl<W: Write + Send> Shard<W> {
                 Sound::F32(_) => &[],
             })?,
         }
-        lists(&mut group, &rows, |row| &row.samples.haptic)?;
+        lists::<FloatType, W>(&mut group, &rows, |row| &row.samples.haptic)?;
         for place in 0..rows[0].samples.further.len() {
-            lists(&mut group, &rows, |row| &row.samples.further[place])?;
+            lists::<FloatType, W>(&mut group, &rows, |row| &row.samples.further[place])?;
         }
         for place in 0..rows[0].samples.force.as_ref().map_or(0, |force| force.len()) {
-            numbers_lists(&mut group, &rows, |row| {
+            lists::<DoubleType, W>(&mut group, &rows, |row| {
                 row.samples.force.as_ref().map_or(&[], |force| &force[place])
             })?;
         }
@@ -175,25 +175,9 @@ fn numbers<W: Write + Send>(
     column.close()
 }
 
-fn lists<W: Write + Send>(
-    group: &mut Group<'_, W>,
-    rows: &[Record],
-    of: impl Fn(&Record) -> &[f32],
-) -> Result<(), ParquetError> {
-    lists_of::<FloatType, W>(group, rows, of)
-}
-
-fn numbers_lists<W: Write + Send>(
-    group: &mut Group<'_, W>,
-    rows: &[Record],
-    of: impl Fn(&Record) -> &[f64],
-) -> Result<(), ParquetError> {
-    lists_of::<DoubleType, W>(group, rows, of)
-}
-
 /// Lists are written as one column of samples, with the places where a row begins: repetition 0.
 /// Definition 0 is an empty list.
-fn lists_of<T: DataType, W: Write + Send>(
+fn lists<T: DataType, W: Write + Send>(
     group: &mut Group<'_, W>,
     rows: &[Record],
     of: impl Fn(&Record) -> &[T::T],

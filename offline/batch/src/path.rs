@@ -11,7 +11,7 @@
 
 use crate::draw::Draws;
 use asperity::files::FileError;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Share of the surface at each edge that is not touched.
@@ -68,25 +68,13 @@ impl Motion {
     pub fn log(&self, surface: &str, size_m: [f64; 2], draws: Draws) -> ContactLog {
         let way = Way::drawn(self, size_m, draws);
         let reports = (self.duration_s * self.reports_hz).ceil() as u64;
-        let mut lines: Vec<LogLine> = (0..reports)
-            .map(|report| {
-                let t = report as f64 / self.reports_hz;
-                let (place_m, velocity_m_s) = way.at(t);
-                let uv = [place_m[0] / size_m[0], place_m[1] / size_m[1]];
-                let sample = ContactSample {
-                    velocity_m_s: Some(velocity_m_s),
-                    ..ContactSample::new(uv, self.force_n)
-                };
-                let event = if report == 0 {
-                    LogEvent::begin(0, surface, 0, sample)
-                } else {
-                    LogEvent::moved(0, sample)
-                };
-                LogLine { t, event }
-            })
-            .collect();
-        lines.push(LogLine { t: self.duration_s, event: LogEvent::End { contact: 0 } });
-        ContactLog { lines }
+        let samples = (0..reports).map(|report| {
+            let t = report as f64 / self.reports_hz;
+            let (place_m, velocity_m_s) = way.at(t);
+            let uv = [place_m[0] / size_m[0], place_m[1] / size_m[1]];
+            (t, ContactSample::new(uv, self.force_n).sliding(velocity_m_s))
+        });
+        ContactLog { lines: LogLine::contact(0, (surface, LogHand::felt_by(0)), samples, self.duration_s) }
     }
 }
 
@@ -163,6 +151,7 @@ fn folded(x: f64, low: f64, high: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity::files::contact_log::LogEvent;
 
     const SIZE_M: [f64; 2] = [0.1, 0.06];
 

@@ -77,9 +77,7 @@ impl Stroke {
         let file = SceneFile::parse(&scene, &folder.join(format!("{id}.toml"))).map_err(at)?;
         let touched = &file.surfaces[0];
         let log = motion.log(&touched.name, [touched.width_m, touched.height_m], draws);
-        let mut contacts = Vec::new();
-        log.write(&mut contacts).map_err(|error| at(FileError::from_error(error)))?;
-        let contacts = String::from_utf8(contacts).map_err(|error| at(FileError::from_error(error)))?;
+        let contacts = log.to_jsonl();
         let split = split(spec, place, choices.len(), number);
         Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion, file, log })
     }

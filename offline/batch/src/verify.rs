@@ -8,17 +8,18 @@ use crate::spec::Spec;
 use crate::stroke::{DataLevels, rendered};
 use asperity::files::FileError;
 use asperity::load::Maps;
+use serde::Serialize;
 use std::path::Path;
 
 /// Shards and strokes that were looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Verified {
     /// Shards whose bytes are those that were written.
     pub shards: u64,
-    /// Strokes that were rendered again, to the same bits.
-    pub rendered: u64,
     /// Shards of the specification that are not there yet.
     pub missing: u64,
+    /// Strokes that were rendered again, to the same bits.
+    pub rendered: u64,
 }
 
 /// Compares every shard with the manifest, and renders a share of the strokes again. `progress` is

@@ -16,12 +16,11 @@
 //! judge with less noise is stricter than the observers were.
 
 use asperity::files::FileError;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Extent, Roughness, Surface, Wrap};
 use asperity_dsp::rng::Rng;
-use asperity_fft::FftPlanner;
-use asperity_fft::num_complex::Complex64;
+use asperity_fft::{PowerSpectra, hann};
 use asperity_surface::height_map::HeightMap;
 use asperity_surface::raster::Raster;
 use std::collections::HashMap;
@@ -76,7 +75,7 @@ pub fn strokes(
     count: usize,
     seed: u64,
 ) -> Result<Vec<Features>, FileError> {
-    let mut levels = Levels::new((STROKE_S * RATE_HZ) as usize);
+    let levels = Levels::new((STROKE_S * RATE_HZ) as usize);
     displacements(heights, tiles, size, (count, seed), |samples| levels.of(samples))
 }
 
@@ -130,54 +129,36 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
         let contact = stroke as u64 + 1;
         let start_s = stroke as f64 * (LANDING_S + STROKE_S + PAUSE_S);
         let steps = ((LANDING_S + STROKE_S) * EVENTS_HZ) as usize;
-        for step in 0..steps {
+        let samples = (0..steps).map(|step| {
             let t = step as f64 / EVENTS_HZ;
-            let sample = ContactSample {
-                uv: [0, 1].map(|axis| from[axis] + velocity[axis] * t / size_m[axis]),
-                velocity_m_s: Some(velocity),
-                normal_force_n,
-                closing_m_s: 0.0,
-                ..ContactSample::default()
-            };
-            let event = if step == 0 {
-                LogEvent::begin(contact, "s", 0, sample)
-            } else {
-                LogEvent::moved(contact, sample)
-            };
-            lines.push(LogLine { t: start_s + t, event });
-        }
-        lines.push(LogLine { t: start_s + LANDING_S + STROKE_S, event: LogEvent::End { contact } });
+            let uv = [0, 1].map(|axis| from[axis] + velocity[axis] * t / size_m[axis]);
+            (start_s + t, ContactSample::new(uv, normal_force_n).sliding(velocity))
+        });
+        let end_s = start_s + LANDING_S + STROKE_S;
+        lines.extend(LogLine::contact(contact, ("s", LogHand::felt_by(0)), samples, end_s));
     }
     ContactLog { lines }
 }
 
 /// Third-octave levels.
-struct Levels {
-    plan: std::sync::Arc<dyn asperity_fft::Fft<f64>>,
-    window: Vec<f64>,
-    work: Vec<Complex64>,
-}
+struct Levels(PowerSpectra);
 
 impl Levels {
     fn new(length: usize) -> Self {
-        let window = (0..length).map(|i| 0.5 - 0.5 * (TAU * (i as f64 + 0.5) / length as f64).cos());
-        Self { plan: FftPlanner::new().plan_fft_forward(length), window: window.collect(), work: Vec::new() }
+        Self(PowerSpectra::new(hann(length, 0.5), length))
     }
 
-    fn of(&mut self, samples: &[f32]) -> Features {
-        self.work.clear();
-        let windowed = samples.iter().zip(&self.window).map(|(&x, w)| Complex64::new(f64::from(x) * w, 0.0));
-        self.work.extend(windowed);
-        self.plan.process(&mut self.work);
+    fn of(&self, samples: &[f32]) -> Features {
+        let power = self.0.of(samples.iter().map(|x| f64::from(*x)));
         let n = samples.len() as f64;
         // A Hann window keeps 3/8 of the power; both halves of the spectrum count.
         let scale = 2.0 / (n * n * 0.375);
         let mut features = [NOISE_M * NOISE_M; BANDS];
-        for (bin, value) in self.work.iter().enumerate().take(samples.len() / 2).skip(1) {
+        for (bin, power) in power.iter().enumerate().take(samples.len() / 2).skip(1) {
             let octaves = (bin as f64 * RATE_HZ / n / LOWEST_HZ).log2();
             let band = (3.0 * octaves).round();
             if (0.0..BANDS as f64).contains(&band) {
-                features[band as usize] += scale * value.norm_sqr();
+                features[band as usize] += scale * power;
             }
         }
         features.map(|power| 10.0 * power.log10())

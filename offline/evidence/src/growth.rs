@@ -2,7 +2,7 @@
 //! micro-relief; its level on any surface.
 
 use asperity::files::FileError;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Engine, Quantity, Surface, probe_by_name};
 use std::collections::HashMap;
@@ -72,20 +72,12 @@ pub fn rms(
     let Engine { mut scene, renderer, .. } = config.build().map_err(FileError::from_error)?;
     let id = scene.add_surface(surface).map_err(FileError::from_error)?;
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
-    let sample = |t: f64| ContactSample {
-        uv: [0.1 + speed_m_s * t / side_m, 0.525],
-        velocity_m_s: Some([speed_m_s, 0.0]),
-        normal_force_n: force_n,
-        closing_m_s: 0.0,
-        ..ContactSample::default()
+    let sample = |t: f64| {
+        let uv = [0.1 + speed_m_s * t / side_m, 0.525];
+        (t, ContactSample::new(uv, force_n).sliding([speed_m_s, 0.0]))
     };
-    let event = |step: usize, t: f64| {
-        if step == 0 { LogEvent::begin(1, "s", 0, sample(t)) } else { LogEvent::moved(1, sample(t)) }
-    };
-    let mut lines: Vec<LogLine> = (0..60)
-        .map(|step| LogLine { t: step as f64 / 60.0, event: event(step, step as f64 / 60.0) })
-        .collect();
-    lines.push(LogLine { t: 1.0, event: LogEvent::End { contact: 1 } });
+    let samples = (0..60).map(|step| sample(f64::from(step) / 60.0));
+    let lines = LogLine::contact(1, ("s", LogHand::felt_by(0)), samples, 1.0);
     let options = Options { tail_s: 0.0, ..Options::default() };
     let render = offline::render(scene, renderer, &ContactLog { lines }, &names, &options);
     let render = render.map_err(FileError::from_error)?;

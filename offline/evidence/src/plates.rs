@@ -12,7 +12,7 @@ use crate::observer::sound::{heard, threshold_pa2};
 use crate::observer::touch::{Hand, Unit, felt};
 use crate::observer::{Confusion, Judge, Percept};
 use asperity::files::FileError;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity::surface::solid_noise::SolidNoise;
@@ -41,8 +41,9 @@ const EVERY: usize = 8;
 /// Senses of a condition.
 pub const CONDITIONS: [(&str, &[usize]); 3] = [("touch", &[0]), ("sound", &[1]), ("both", &[0, 1])];
 
-/// Height of a plate at a place, m.
-fn height_m(plate: &str, x: f64, y: f64) -> f64 {
+/// Height of a plate at a place, m; any other name is a flat one.
+#[must_use]
+pub fn height_m(plate: &str, x: f64, y: f64) -> f64 {
     let phase = (x / PITCH_M).fract();
     match plate {
         "ridge" => {
@@ -59,6 +60,16 @@ fn height_m(plate: &str, x: f64, y: f64) -> f64 {
     }
 }
 
+/// R of a plate at a place: halves that are glossy and matte, or printed PLA.
+#[must_use]
+pub fn roughness(plate: &str, x: f64) -> f64 {
+    match plate.contains("matte") {
+        false => PLASTIC,
+        true if (x < 0.5 * SIDE_M) == (plate == "matte-shiny") => 0.9,
+        true => 0.1,
+    }
+}
+
 /// A plate of the study; any other name is a flat one.
 ///
 /// # Errors
@@ -71,8 +82,7 @@ pub fn plate(name: &str) -> Result<Surface, FileError> {
             Raster::from_fn(side, side, |x, y| of((x as f64 + 0.5) * texel, (y as f64 + 0.5) * texel));
         HeightMap::new(&raster, extent, Wrap::Clamp).map_err(FileError::from_error)
     };
-    let halves = |x: f64| if (x < 0.5 * SIDE_M) == (name == "matte-shiny") { 0.9 } else { 0.1 };
-    let rough = map(128, &|x, _| if name.contains("matte") { halves(x) } else { PLASTIC })?;
+    let rough = map(128, &|x, _| roughness(name, x))?;
     let surface = Surface::new(map(512, &|x, y| height_m(name, x, y))?, SIDE_M, SIDE_M);
     Ok(surface.map_err(FileError::from_error)?.roughness(Roughness::Map(Box::new(rough))))
 }
@@ -105,30 +115,11 @@ impl Way {
     }
 
     fn lines(&self) -> Vec<LogLine> {
-        let (contact, steps) = (self.axis as u64, ((self.to_s - self.from_s) * 60.0) as usize);
-        let mut lines: Vec<LogLine> = (0..steps)
-            .map(|step| {
-                let t = self.from_s + step as f64 / 60.0;
-                let mut velocity = [0.0; 2];
-                velocity[self.axis] = self.speed_m_s;
-                let sample = ContactSample {
-                    uv: self.place(t),
-                    velocity_m_s: Some(velocity),
-                    normal_force_n: self.force_n,
-                    closing_m_s: 0.0,
-                    ..ContactSample::default()
-                };
-                let begins = step == 0;
-                let event = if begins {
-                    LogEvent::begin(contact, "s", 0, sample)
-                } else {
-                    LogEvent::moved(contact, sample)
-                };
-                LogLine { t, event }
-            })
-            .collect();
-        lines.push(LogLine { t: self.to_s, event: LogEvent::End { contact } });
-        lines
+        let mut velocity = [0.0; 2];
+        velocity[self.axis] = self.speed_m_s;
+        let times = (0..((self.to_s - self.from_s) * 60.0) as usize).map(|n| self.from_s + n as f64 / 60.0);
+        let samples = times.map(|t| (t, ContactSample::new(self.place(t), self.force_n).sliding(velocity)));
+        LogLine::contact(self.axis as u64, ("s", LogHand::felt_by(0)), samples, self.to_s)
     }
 }
 
@@ -264,17 +255,42 @@ pub struct Table {
     pub shuffled: f64,
 }
 
+/// Makes a surface of a class by a seed.
+pub type Make = Box<dyn Fn(u64) -> Result<Surface, FileError>>;
+
+/// The six plates.
+#[must_use]
+pub fn six_plates() -> Vec<Make> {
+    PLATES.iter().map(|name| Box::new(move |_| plate(name)) as Make).collect()
+}
+
+/// The seven materials.
+#[must_use]
+pub fn seven_materials() -> Vec<Make> {
+    SolidMaterial::SEVEN.into_iter().map(|one| Box::new(move |seed| material(one, seed)) as Make).collect()
+}
+
+/// Explorations that both observers have learnt, and those that they are asked, class by class.
+///
+/// # Errors
+/// When the engine refuses a surface.
+pub fn lots(surfaces: &[Make], asked: u64, placed: bool) -> Result<[Vec<Vec<Explored>>; 2], FileError> {
+    let pascals = pascals()?;
+    let known = lot(surfaces, (150_000, 16), pascals, placed)?;
+    Ok([known, lot(surfaces, (190_000, asked), pascals, placed)?])
+}
+
 /// Explorations of each class from a seed on.
 ///
 /// # Errors
 /// When the engine refuses a surface.
 pub fn lot(
-    surfaces: &[&dyn Fn(u64) -> Result<Surface, FileError>],
+    surfaces: &[Make],
     (from, count): (u64, u64),
     pascals: f64,
     placed: bool,
 ) -> Result<Vec<Vec<Explored>>, FileError> {
-    let of = |(index, surface): (usize, &&dyn Fn(u64) -> Result<Surface, FileError>)| {
+    let of = |(index, surface): (usize, &Make)| {
         let seeds = (0..count).map(|n| from + 1000 * index as u64 + n);
         seeds.map(|seed| explore(surface(seed)?, seed, pascals, placed)).collect()
     };

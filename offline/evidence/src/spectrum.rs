@@ -1,7 +1,7 @@
 //! Spectra of signals: power, third-octave levels as vibration and sound are compared, the
 //! strongest line.
 
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{FftPlanner, PowerSpectra, hann, num_complex::Complex, samples_from};
 
 /// Levels of the third octaves from 25 Hz to 10 kHz, dB re 1 (rms²); Welch's method with Hann
 /// windows.
@@ -26,20 +26,13 @@ pub fn third_octaves_from_db(x: &[f32], rate_hz: f64, length: usize, first_hz: f
 
 /// Mean power of each bin up to Nyquist; the sum is the mean square.
 pub fn power_spectrum(x: &[f32], length: usize) -> Vec<f64> {
-    let fft = FftPlanner::new().plan_fft_forward(length);
-    let window: Vec<f64> = (0..length)
-        .map(|i| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * i as f64 / length as f64).cos())
-        .collect();
-    let energy: f64 = window.iter().map(|w| w * w).sum();
+    let spectra = PowerSpectra::new(hann(length, 0.0), length);
+    let energy = spectra.energy();
     let mut power = vec![0.0; length / 2];
     let starts: Vec<usize> = (0..=x.len().saturating_sub(length)).step_by(length / 2).collect();
     for start in &starts {
-        let mut block: Vec<_> = (0..length)
-            .map(|i| Complex::new(f64::from(x.get(start + i).copied().unwrap_or(0.0)) * window[i], 0.0))
-            .collect();
-        fft.process(&mut block);
-        for (sum, bin) in power.iter_mut().zip(&block) {
-            *sum += 2.0 * bin.norm_sqr() / (energy * length as f64) / starts.len() as f64;
+        for (sum, bin) in power.iter_mut().zip(spectra.of(samples_from(x, *start as isize))) {
+            *sum += 2.0 * bin / (energy * length as f64) / starts.len() as f64;
         }
     }
     power

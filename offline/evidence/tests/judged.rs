@@ -1,15 +1,13 @@
 //! Six plates and seven materials by both observers. What they say is printed and stands in
 //! `docs/lab/feel.md`, whatever it is; held to are the controls.
 
-use asperity::Surface;
-use asperity::files::FileError;
 use asperity::surface::solid_materials::SolidMaterial;
 use asperity_evidence::compare::{Asked, Comparison};
 use asperity_evidence::exact_brownian::ExactBrownian;
 use asperity_evidence::likeness::Impression;
 use asperity_evidence::observer::{constants, second};
 use asperity_evidence::plates::{
-    CONDITIONS, PLATES, Table, against_itself, judge, lot, material, pascals, plate,
+    CONDITIONS, PLATES, Table, against_itself, judge, lots, seven_materials, six_plates,
 };
 use asperity_evidence::reliefs::{Relief, SHAPES, Shape};
 use asperity_pictures::metamer::{MetamerOptions, metamer};
@@ -18,11 +16,6 @@ use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 
 /// Templates and trials a class; people had 24 trials a plate and 16 a material.
 const COUNT: u64 = 16;
-/// Seeds that nothing was tried on before: templates, trials.
-const FROM: [u64; 2] = [150_000, 190_000];
-
-/// A surface of a seed.
-type Make = dyn Fn(u64) -> Result<Surface, FileError>;
 
 fn told(tables: &[Table], names: &[&str]) {
     println!("observers {} {}", constants::constants_sha256(), second::constants_sha256());
@@ -74,10 +67,7 @@ fn a_rhythm_over_the_period_of_the_ground_is_heard_and_steady_noise_is_not() {
 
 #[test]
 fn both_observers_say_what_they_say_of_the_six_plates() {
-    let of: Vec<Box<Make>> = PLATES.iter().map(|name| Box::new(move |_| plate(name)) as _).collect();
-    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
-    let pascals = pascals().unwrap();
-    let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, true).unwrap());
+    let [known, asked] = lots(&six_plates(), COUNT, true).unwrap();
     told(&judge(&known, &asked, &CONDITIONS), &PLATES);
     let itself = against_itself(&known, &asked);
     println!("a plate against itself: {itself:?}");
@@ -87,12 +77,8 @@ fn both_observers_say_what_they_say_of_the_six_plates() {
 
 #[test]
 fn both_observers_say_what_they_say_of_the_seven_materials() {
-    let of: Vec<Box<Make>> =
-        SolidMaterial::SEVEN.iter().map(|one| Box::new(move |seed| material(*one, seed)) as _).collect();
-    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
     let names = SolidMaterial::SEVEN.map(SolidMaterial::name);
-    let pascals = pascals().unwrap();
-    let [known, asked] = FROM.map(|from| lot(&surfaces, (from, COUNT), pascals, false).unwrap());
+    let [known, asked] = lots(&seven_materials(), COUNT, false).unwrap();
     told(&judge(&known, &asked, &CONDITIONS[..1]), &names);
 }
 

@@ -88,13 +88,8 @@ pub struct Quiet {
     pub noise: f64,
 }
 
-/// Takes the noise off a picture of values 0–1 that was no JPEG, or of which nobody knows.
-#[must_use]
-pub fn without_camera_noise(picture: &Raster) -> Quiet {
-    without_noise_and_steps(picture, 0.0)
-}
-
-/// Takes the noise off a picture of values 0–1 that came from a JPEG of this divisor
+/// Takes the noise off a picture of values 0–1 that came from a JPEG of this divisor, 0
+/// of none
 /// ([`PhotoOptions::jpeg_divisor`](crate::from_photo::PhotoOptions::jpeg_divisor)).
 #[must_use]
 pub fn without_noise_and_steps(picture: &Raster, jpeg_divisor: f64) -> Quiet {
@@ -295,12 +290,12 @@ mod tests {
     fn a_wall_loses_its_noise_and_a_waves_strength_stays() {
         let mut rng = Rng::new(5);
         let wall = Raster::from_fn(200, 160, |_, _| 0.8 + 0.01 * rng.normal());
-        let quiet = without_camera_noise(&wall);
+        let quiet = without_noise_and_steps(&wall, 0.0);
         assert!(rms(&quiet.picture) < 0.05 * rms(&wall), "{}", rms(&quiet.picture));
         assert!((quiet.noise - 0.01).abs() < 0.001);
         let wave = |x: usize| 0.02 * (TAU * x as f64 / 10.0).sin();
         let noisy = Raster::from_fn(200, 160, |x, y| wall.at(x, y) + wave(x));
-        let left = rms(&without_camera_noise(&noisy).picture) / (0.02 / 2.0_f64.sqrt());
+        let left = rms(&without_noise_and_steps(&noisy, 0.0).picture) / (0.02 / 2.0_f64.sqrt());
         assert!((left - 1.0).abs() < 0.05, "{left}");
     }
 
@@ -314,7 +309,7 @@ mod tests {
             let sum = white.at(x, y) + white.at(x + 1, y) + white.at(x, y + 1) + white.at(x + 1, y + 1);
             0.7 + 0.006 * sum / 2.0
         });
-        let left = rms(&without_camera_noise(&blurred).picture) / rms(&blurred);
+        let left = rms(&without_noise_and_steps(&blurred, 0.0).picture) / rms(&blurred);
         assert!(left < 0.1, "{left}");
         // A ground that has more of longer waves keeps them, however faint.
         let rising = |long: f64| {
@@ -324,7 +319,7 @@ mod tests {
                 0.7 + 0.003 * (white.at(x, y) + long * coarse.at(x / 10, y / 10))
             })
         };
-        let kept = rms(&without_camera_noise(&rising(1.0)).picture) / rms(&rising(1.0));
+        let kept = rms(&without_noise_and_steps(&rising(1.0), 0.0).picture) / rms(&rising(1.0));
         assert!(kept > 0.6, "{kept}");
     }
 
@@ -339,7 +334,7 @@ mod tests {
                 let sum: f64 = (0..9).map(|i| white.at(x + i % 3, y + i / 3)).sum();
                 0.7 + levels / 255.0 * sum / 9.0
             });
-            let left = rms(&without_camera_noise(&blurred).picture) / rms(&blurred);
+            let left = rms(&without_noise_and_steps(&blurred, 0.0).picture) / rms(&blurred);
             assert!(left < 0.1, "{levels}: {left}");
         }
     }
@@ -361,7 +356,7 @@ mod tests {
             }
             let lit = Raster::from_fn(400, 400, |x, y| 0.7 - 0.07 * x as f64 / 400.0 + wall.at(x, y));
             let light = detrended(&lit);
-            let quiet = detrended(&without_camera_noise(&lit).picture);
+            let quiet = detrended(&without_noise_and_steps(&lit, 0.0).picture);
             assert!(rms(&quiet) < 0.2 * rms(&light), "{seed}: {} of {}", rms(&quiet), rms(&light));
         }
     }
@@ -370,7 +365,7 @@ mod tests {
     fn a_strong_white_texture_is_no_noise() {
         let mut rng = Rng::new(6);
         let sand = Raster::from_fn(128, 128, |_, _| 0.5 + 0.1 * rng.normal());
-        let quiet = without_camera_noise(&sand);
+        let quiet = without_noise_and_steps(&sand, 0.0);
         assert_eq!(quiet.noise, MOST_NOISE);
         assert!(rms(&quiet.picture) > 0.95 * rms(&sand));
     }
@@ -378,7 +373,7 @@ mod tests {
     #[test]
     fn a_picture_without_anything_in_it_stays_as_it_is() {
         let even = Raster::constant(20, 33, 0.25);
-        let quiet = without_camera_noise(&even).picture;
+        let quiet = without_noise_and_steps(&even, 0.0).picture;
         assert!(quiet.values.iter().all(|v| (v - 0.25).abs() < 1e-12));
     }
 }

@@ -99,16 +99,6 @@ impl Fft2 {
     /// # Panics
     /// When a slice does not hold [`Fft2::len`] values.
     pub fn inverse(&mut self, spectrum: &mut [Complex64], image: &mut [Complex64]) {
-        self.inverse_unscaled(spectrum, image);
-        let scale = 1.0 / self.len() as f64;
-        image.iter_mut().for_each(|value| *value *= scale);
-    }
-
-    /// As [`Fft2::inverse`] without the division, for callers that scale their filters instead.
-    ///
-    /// # Panics
-    /// When a slice does not hold [`Fft2::len`] values.
-    pub fn inverse_unscaled(&mut self, spectrum: &mut [Complex64], image: &mut [Complex64]) {
         assert_eq!(spectrum.len(), self.len(), "a spectrum of the size that was planned");
         for (block, columns) in spectrum.chunks_mut(BLOCK * self.height).enumerate() {
             self.columns[1].process_with_scratch(columns, &mut self.scratch);
@@ -120,6 +110,8 @@ impl Fft2 {
             }
         }
         self.rows[1].process_with_scratch(image, &mut self.scratch);
+        let scale = 1.0 / self.len() as f64;
+        image.iter_mut().for_each(|value| *value *= scale);
     }
 
     /// The spectrum of a real image.

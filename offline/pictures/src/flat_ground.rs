@@ -25,6 +25,7 @@
 //! [`above_flat_ground`] says so.
 
 use crate::borders::Borders;
+use crate::histogram::median;
 use asperity_surface::raster::Raster;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -123,9 +124,7 @@ fn facing(image: &Raster) -> Option<(f64, f64)> {
 
 /// Standard deviation of what scatters above a brightness, at least [`LEAST_SPREAD`].
 fn spread_above(image: &Raster, facing: f64) -> f64 {
-    let mut above: Vec<f64> = image.values.iter().map(|v| v - facing).filter(|&v| v > 0.0).collect();
-    let middle = above.len() / 2;
-    let median = if above.is_empty() { 0.0 } else { *above.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let median = median(image.values.iter().map(|v| v - facing).filter(|&v| v > 0.0).collect());
     (median / MEDIAN_OF_HALF_NORMAL).max(LEAST_SPREAD / SPREADS * facing)
 }
 

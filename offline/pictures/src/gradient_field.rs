@@ -13,7 +13,7 @@
 //! shading algorithms", IEEE PAMI 10, 1988. Changed: the paper divides by i ω; slopes that somebody
 //! computed by differences of texels are put together by the same differences. Which ones they were
 //! can be read from the slopes ([`SlopeSpectrum::possible_derivatives`]): only with the right ones
-//! is D_y P = D_x Q. Slopes that have a noise are put together by [`integrate_rounded`].
+//! is D_y P = D_x Q. Slopes that have a noise are put together by `tiling`.
 //!
 //! A field that does not tile is not taken to repeat but to go on mirrored ([`integrate_open`]).
 
@@ -38,7 +38,6 @@ pub use differences::differences;
 pub use open::{integrate_open, integrate_open_rounded};
 pub use periodic::{Projection, integrate_periodic, slopes};
 pub use spectrum::SlopeSpectrum;
-pub use tiling::integrate_rounded;
 pub use turning::curl;
 pub use walls::Walls;
 

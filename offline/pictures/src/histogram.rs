@@ -171,6 +171,12 @@ fn sort_what_is_left(keys: &mut [u64], sort: impl Fn(&mut [u64])) {
     }
 }
 
+/// Median of values, the upper one of an even number; 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 /// Smallest and largest of finite values.
 fn range(values: &[f64]) -> (f64, f64) {
     // Several at once: one comparison need not wait for the one before.

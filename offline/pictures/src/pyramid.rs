@@ -37,13 +37,12 @@ mod tests;
 
 pub use coefficients::Coefficients;
 
-use crate::fft2::{Fft2, Workspace, signed_bin};
+use crate::fft2::Workspace;
 use asperity_dsp::DesignError;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex64;
 use asperity_surface::raster::Raster;
 use level::Level;
-use std::f64::consts::PI;
 
 /// Number of samples of a band that are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -213,48 +212,6 @@ impl Pyramid {
         (image.width, image.height) = (self.width(), self.height());
         self.image(&spectrum, &mut image.values);
         self.spectrum = spectrum;
-    }
-
-    /// The complex (analytic) sub-bands of the oriented kinds: their real parts are those of
-    /// [`Pyramid::split`], their moduli the local amplitude whatever the phase.
-    ///
-    /// # Panics
-    /// When `values` does not hold width · height values.
-    #[must_use]
-    pub fn split_complex(&mut self, values: &[f64]) -> Vec<(Subband, Vec<Complex64>)> {
-        let spectrum = Fft2::new(self.width(), self.height()).spectrum(values);
-        let oriented = self.subbands.iter().zip(&self.filters);
-        let complex = |(subband, filter): (&Subband, &Filter)| match subband.kind {
-            Kind::Oriented { orientation, .. } => {
-                Some((*subband, self.analytic(&spectrum, filter, orientation)))
-            }
-            _ => None,
-        };
-        oriented.filter_map(complex).collect()
-    }
-
-    /// One sub-band of waves that run along its orientation, not against it.
-    fn analytic(&self, spectrum: &[Complex64], filter: &Filter, orientation: usize) -> Vec<Complex64> {
-        let (width, height) = (self.width(), self.height());
-        let grid = &self.levels[filter.level];
-        let (level_w, level_h) = (grid.fft.width(), grid.fft.height());
-        let (sin, cos) = (PI * orientation as f64 / self.orientations as f64).sin_cos();
-        let scale = 1.0 / spectrum.len() as f64;
-        let mut filtered = vec![Complex64::default(); grid.fft.len()];
-        for ((place, [wx, wy]), gain) in grid.frequencies(width).zip(&filter.gains) {
-            let bin = [place / height, place % height];
-            let mirrored = [(width - bin[0]) % width, (height - bin[1]) % height];
-            let along = wx * cos + wy * sin;
-            let [kx, ky] = if along < 0.0 { mirrored } else { bin };
-            // A wave across the orientation (in a pyramid without any) runs neither way.
-            let side = if along == 0.0 { 1.0 } else { 2.0 };
-            let level_kx = signed_bin(kx, width).rem_euclid(level_w as isize) as usize;
-            let level_ky = signed_bin(ky, height).rem_euclid(level_h as isize) as usize;
-            filtered[level_kx * level_h + level_ky] = spectrum[kx * height + ky] * (gain * side * scale);
-        }
-        let mut image = vec![Complex64::default(); grid.fft.len()];
-        Fft2::new(level_w, level_h).inverse_unscaled(&mut filtered, &mut image);
-        image
     }
 
     /// Filters for sub-bands of another sampling: most of the work of a design is to evaluate them.

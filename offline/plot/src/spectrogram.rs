@@ -5,7 +5,7 @@
 //! the strongest counts, so that no partial is lost at the top of a logarithmic axis.
 
 use super::{ColourBar, Picture, colour::Scale};
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{PowerSpectra, hann, samples_from};
 
 /// Settings of a spectrogram.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,13 +117,9 @@ fn columns_of_levels<S: Copy + Into<f64>>(
 ) -> Vec<f64> {
     let window_len = ((window_s * rate_hz).max(64.0) as usize).next_power_of_two().min(1 << 16);
     let fft_len = window_len * 2;
-    let window: Vec<f64> = (0..window_len)
-        .map(|n| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * (n as f64 + 0.5) / window_len as f64).cos())
-        .collect();
+    let window = hann(window_len, 0.5);
     let scale = 2.0 / window.iter().sum::<f64>();
-    let fft = FftPlanner::new().plan_fft_forward(fft_len);
-    let mut scratch = vec![Complex::default(); fft.get_inplace_scratch_len()];
-    let mut buffer = vec![Complex::default(); fft_len];
+    let spectra = PowerSpectra::new(window, fft_len);
     let mut amplitude = vec![0.0_f64; fft_len / 2 + 1];
     let hop = samples.len() as f64 / columns as f64;
     let repeats = ((hop / window_len as f64).ceil() as usize).clamp(1, WINDOWS_A_COLUMN);
@@ -134,18 +130,10 @@ fn columns_of_levels<S: Copy + Into<f64>>(
         for repeat in 0..repeats {
             let part = (repeat as f64 + 0.5) / repeats as f64;
             let first = ((column as f64 + part) * hop) as isize - (window_len / 2) as isize;
-            for (n, slot) in buffer.iter_mut().enumerate() {
-                let value = match (window.get(n), usize::try_from(first + n as isize)) {
-                    (Some(weight), Ok(at)) => samples.get(at).map_or(0.0, |&sample| sample.into() * weight),
-                    _ => 0.0,
-                };
-                *slot = Complex::new(value, 0.0);
-            }
-            fft.process_with_scratch(&mut buffer, &mut scratch);
             // Squares until the last: a root of every bin of every window would cost as much as the
             // transforms.
-            for (best, bin) in amplitude.iter_mut().zip(&buffer) {
-                *best = best.max(bin.norm_sqr());
+            for (best, bin) in amplitude.iter_mut().zip(spectra.of(samples_from(samples, first))) {
+                *best = best.max(bin);
             }
         }
         amplitude.iter_mut().for_each(|square| *square = square.sqrt() * scale);
@@ -174,24 +162,14 @@ fn level(amplitude: &[f64], from: f64, to: f64) -> f64 {
 #[must_use]
 pub fn third_octaves<S: Copy + Into<f64>>(samples: &[S], rate_hz: f64) -> Vec<[f64; 2]> {
     let window_len = ((0.2 * rate_hz) as usize).next_power_of_two();
-    let window: Vec<f64> = (0..window_len)
-        .map(|n| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * (n as f64 + 0.5) / window_len as f64).cos())
-        .collect();
-    let weight: f64 = window.iter().map(|w| w * w).sum();
-    let fft = FftPlanner::new().plan_fft_forward(window_len);
-    let mut scratch = vec![Complex::default(); fft.get_inplace_scratch_len()];
+    let spectra = PowerSpectra::new(hann(window_len, 0.5), window_len);
+    let weight = spectra.energy();
     let mut power = vec![0.0_f64; window_len / 2];
     let windows = (samples.len() * 2 / window_len).clamp(1, 200);
     for index in 0..windows {
         let first = index * samples.len().saturating_sub(window_len) / windows.max(2).saturating_sub(1);
-        let mut buffer: Vec<Complex<f64>> = window
-            .iter()
-            .enumerate()
-            .map(|(n, w)| Complex::new(samples.get(first + n).map_or(0.0, |&sample| sample.into() * w), 0.0))
-            .collect();
-        fft.process_with_scratch(&mut buffer, &mut scratch);
-        for (sum, bin) in power.iter_mut().zip(&buffer) {
-            *sum += 2.0 * bin.norm_sqr() / (weight * window_len as f64 * windows as f64);
+        for (sum, bin) in power.iter_mut().zip(spectra.of(samples_from(samples, first as isize))) {
+            *sum += 2.0 * bin / (weight * window_len as f64 * windows as f64);
         }
     }
     let bin_hz = rate_hz / window_len as f64;

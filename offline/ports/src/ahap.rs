@@ -13,9 +13,9 @@
 //! `AudioCustom` plays a sound file in step.
 
 use crate::ahap_reader::{Pieces, parts};
-use crate::clip::{Clip, Read};
+use crate::clip::{Clip, Emphasis, Read};
 use crate::error::PortError;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Most points of a curve.
 pub const MOST_POINTS: usize = 16;
@@ -31,81 +31,30 @@ pub struct Files {
     pub transients: Option<String>,
 }
 
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct File {
-    version: f64,
-    pattern: Vec<Item>,
-}
-
-#[derive(Serialize)]
-enum Item {
-    Event(Event),
-    ParameterCurve(Curve),
-}
-
-#[derive(Serialize, Default)]
-#[serde(rename_all = "PascalCase")]
-struct Event {
-    time: f64,
-    event_type: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    event_duration: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    event_waveform_path: Option<String>,
-    event_parameters: Vec<Parameter>,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct Parameter {
-    #[serde(rename = "ParameterID")]
-    parameter_id: &'static str,
-    parameter_value: f64,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct Curve {
-    #[serde(rename = "ParameterID")]
-    parameter_id: &'static str,
-    time: f64,
-    parameter_curve_control_points: Vec<ControlPoint>,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct ControlPoint {
-    time: f64,
-    parameter_value: f64,
-}
-
-fn parameters(intensity: f64, sharpness: f64) -> Vec<Parameter> {
-    vec![
-        Parameter { parameter_id: "HapticIntensity", parameter_value: intensity },
-        Parameter { parameter_id: "HapticSharpness", parameter_value: sharpness },
-    ]
+fn parameters(intensity: f64, sharpness: f64) -> Value {
+    json!([
+        { "ParameterID": "HapticIntensity", "ParameterValue": intensity },
+        { "ParameterID": "HapticSharpness", "ParameterValue": sharpness },
+    ])
 }
 
 /// Points split into curves of at most [`MOST_POINTS`], the joints repeated.
-fn curves(parameter_id: &'static str, points: &[(f64, f64)]) -> impl Iterator<Item = Item> {
+fn curves(parameter: &'static str, points: &[(f64, f64)]) -> impl Iterator<Item = Value> {
     let mut first = 0;
     std::iter::from_fn(move || {
-        if first >= points.len() {
-            return None;
-        }
+        let begins_s = points.get(first)?.0;
         let last = (first + MOST_POINTS).min(points.len());
-        let time = points[first].0;
-        let control = |(t, value): &(f64, f64)| ControlPoint { time: t - time, parameter_value: *value };
-        let parameter_curve_control_points = points[first..last].iter().map(control).collect();
+        let control = |(t, value): &(f64, f64)| json!({ "Time": t - begins_s, "ParameterValue": value });
+        let part: Vec<Value> = points[first..last].iter().map(control).collect();
         first = if last == points.len() { last } else { last - 1 };
-        Some(Item::ParameterCurve(Curve { parameter_id, time, parameter_curve_control_points }))
+        Some(json!({ "ParameterCurve": {
+            "ParameterID": parameter, "Time": begins_s, "ParameterCurveControlPoints": part,
+        } }))
     })
 }
 
-fn text(pattern: Vec<Item>) -> Result<String, PortError> {
-    serde_json::to_string(&File { version: 1.0, pattern })
-        .map_err(|error| PortError::new("ahap", error, "please report it"))
+fn text(pattern: &[Value]) -> String {
+    json!({ "Version": 1.0, "Pattern": pattern }).to_string()
 }
 
 /// Intensities that are straight in between where the clip's amplitudes are.
@@ -135,38 +84,31 @@ fn intensities(clip: &Clip) -> Vec<(f64, f64)> {
 pub fn write(clip: &Clip, sound: Option<&str>) -> Result<Files, PortError> {
     let clip = clip.clone().checked()?;
     let strokes = clip.amplitude.iter().filter_map(|p| p.emphasis.map(|e| (p.time_s, e)));
-    let strokes: Vec<Item> = strokes
-        .map(|(time, e)| {
-            let event_parameters = parameters(e.amplitude.sqrt(), e.frequency);
-            Item::Event(Event { time, event_type: "HapticTransient", event_parameters, ..Event::default() })
-        })
-        .collect();
+    let stroke = |(time_s, e): (f64, Emphasis)| {
+        json!({ "Event": {
+            "Time": time_s, "EventType": "HapticTransient",
+            "EventParameters": parameters(e.amplitude.sqrt(), e.frequency),
+        } })
+    };
+    let strokes: Vec<Value> = strokes.map(stroke).collect();
     let mut pattern = Vec::new();
     if let Some(path) = sound {
-        let volume = Parameter { parameter_id: "AudioVolume", parameter_value: 1.0 };
-        let event_waveform_path = Some(path.to_owned());
-        let event_parameters = vec![volume];
-        let event =
-            Event { event_type: "AudioCustom", event_waveform_path, event_parameters, ..Event::default() };
-        pattern.push(Item::Event(event));
+        pattern.push(json!({ "Event": {
+            "Time": 0.0, "EventType": "AudioCustom", "EventWaveformPath": path,
+            "EventParameters": [{ "ParameterID": "AudioVolume", "ParameterValue": 1.0 }],
+        } }));
     }
     if clip.amplitude.iter().all(|p| p.amplitude == 0.0) && !strokes.is_empty() {
         pattern.extend(strokes);
-        return Ok(Files { main: text(pattern)?, transients: None });
+        return Ok(Files { main: text(&pattern), transients: None });
     }
     let (begins_s, ends_s) = (clip.amplitude[0].time_s, clip.duration_s());
     let mut time = begins_s;
     while time < ends_s {
-        let event_duration = Some((ends_s - time).min(LONGEST_EVENT_S));
-        let event_parameters = parameters(1.0, 0.0);
-        let event = Event {
-            time,
-            event_type: "HapticContinuous",
-            event_duration,
-            event_parameters,
-            ..Event::default()
-        };
-        pattern.push(Item::Event(event));
+        pattern.push(json!({ "Event": {
+            "Time": time, "EventType": "HapticContinuous",
+            "EventDuration": (ends_s - time).min(LONGEST_EVENT_S), "EventParameters": parameters(1.0, 0.0),
+        } }));
         time += LONGEST_EVENT_S;
     }
     let intensity = intensities(&clip);
@@ -176,8 +118,8 @@ pub fn write(clip: &Clip, sound: Option<&str>) -> Result<Files, PortError> {
     };
     pattern.extend(curves("HapticIntensityControl", &intensity));
     pattern.extend(curves("HapticSharpnessControl", &sharpness));
-    let transients = if strokes.is_empty() { None } else { Some(text(strokes)?) };
-    Ok(Files { main: text(pattern)?, transients })
+    let transients = (!strokes.is_empty()).then(|| text(&strokes));
+    Ok(Files { main: text(&pattern), transients })
 }
 
 /// Reads a clip: continuous events times their curves, transients as strokes. Sounds and parameters

@@ -2,15 +2,17 @@
 //!
 //! This is what phones and headsets play, whatever their files are called: a sine whose peak and
 //! frequency go in straight lines from point to point. Amplitude 1 is a sine of peak 1 in the
-//! samples that it was made from; frequency 0 to 1 spans the device's range.
+//! samples that it was made from; frequency 0 to 1 spans the device's range. Its parts are written
+//! as `.haptic` has them.
 
 use crate::error::{PortError, within};
+use serde::{Deserialize, Serialize};
 
 /// Longest clip, s.
 pub const LONGEST_S: f64 = 3600.0;
 
 /// A stroke that stands above the envelope.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Emphasis {
     /// 0 to 1, at least the envelope's.
     pub amplitude: f64,
@@ -19,27 +21,31 @@ pub struct Emphasis {
 }
 
 /// A point of the amplitude's envelope.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AmplitudePoint {
     /// Seconds since the beginning.
+    #[serde(rename = "time")]
     pub time_s: f64,
     /// 0 to 1.
     pub amplitude: f64,
     /// A stroke that begins here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emphasis: Option<Emphasis>,
 }
 
 /// A point of the frequency's envelope.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrequencyPoint {
     /// Seconds since the beginning.
+    #[serde(rename = "time")]
     pub time_s: f64,
     /// 0 to 1 of the device's range.
     pub frequency: f64,
 }
 
 /// Who made a clip of what.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct About {
     /// The program that wrote it first.
     pub editor: String,

@@ -5,7 +5,7 @@
 //! nobody feels. Phases stay as they are.
 
 pub use asperity_dsp::sensation::THRESHOLD_DB;
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{FftPlanner, PowerSpectra, hann, num_complex::Complex, samples_from};
 
 /// Everything is compared at this rate, Hz.
 pub const RATE_HZ: f64 = 8000.0;
@@ -78,22 +78,13 @@ pub fn felt(samples: &[f64]) -> Vec<f64> {
 /// the mean square.
 pub(crate) fn power(samples: &[f64]) -> Vec<f64> {
     const LENGTH: usize = 4096;
-    let fft = FftPlanner::new().plan_fft_forward(LENGTH);
-    let window: Vec<f64> = (0..LENGTH)
-        .map(|i| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * i as f64 / LENGTH as f64).cos())
-        .collect();
+    let spectra = PowerSpectra::new(hann(LENGTH, 0.0), LENGTH);
     let mut power = vec![0.0; LENGTH / 2];
     // Windows that hang over both ends, so that every sample counts alike.
-    let mut start = -(LENGTH as isize) / 2;
-    while start < samples.len() as isize {
-        let sample = |i: usize| usize::try_from(start + i as isize).ok().and_then(|n| samples.get(n));
-        let mut block: Vec<_> =
-            (0..LENGTH).map(|i| Complex::new(sample(i).copied().unwrap_or(0.0) * window[i], 0.0)).collect();
-        fft.process(&mut block);
-        for (sum, bin) in power.iter_mut().zip(&block) {
-            *sum += 2.0 * bin.norm_sqr() / LENGTH as f64;
+    for start in (-(LENGTH as isize) / 2..samples.len() as isize).step_by(LENGTH / 2) {
+        for (sum, bin) in power.iter_mut().zip(spectra.of(samples_from(samples, start))) {
+            *sum += 2.0 * bin / LENGTH as f64;
         }
-        start += LENGTH as isize / 2;
     }
     // Windows of Hann squared, half overlapping, sum to 3/4 on the mean.
     let scale = 1.0 / (0.75 * samples.len().max(1) as f64);

@@ -6,6 +6,7 @@
 //! with a Kaiser window w of β = 9 over 32 zero crossings on either side: what would fold back lies
 //! below −85 dB, what is kept is flat to 0.01 dB up to 0.9 of the lower Nyquist frequency.
 
+use asperity_dsp::bessel::bessel_i0;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -126,16 +127,6 @@ fn kernel() -> Vec<f64> {
             sinc * bessel_i0(BETA * (1.0 - part * part).sqrt()) / bessel_i0(BETA)
         })
         .collect()
-}
-
-/// Modified Bessel function of the first kind, order 0.
-fn bessel_i0(x: f64) -> f64 {
-    let (mut sum, mut term) = (1.0, 1.0);
-    for k in 1..60 {
-        term *= (0.5 * x / f64::from(k)).powi(2);
-        sum += term;
-    }
-    sum
 }
 
 #[cfg(test)]

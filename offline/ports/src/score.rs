@@ -13,7 +13,7 @@
 use crate::felt::{RATE_HZ, bin_hz, felt, power, weight};
 
 /// The four numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Score {
     /// dB rms.
     pub in_band_error_db: f64,

@@ -2,7 +2,7 @@
 
 use crate::felt::{RATE_HZ, weight};
 use crate::score::centres_hz;
-use asperity_fft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{PowerSpectra, hann, samples_from};
 
 /// Window of a spectrum, samples of 8 kHz: 64 ms.
 const WINDOW: usize = 512;
@@ -38,27 +38,17 @@ impl ToneTrack {
         let centres: Vec<f64> = centres_hz(band_hz).collect();
         let octave = cells_hz.iter().map(|hz| nearest(&centres, *hz)).collect();
         let weights: Vec<f64> = (0..LENGTH / 2).map(|bin| weight(bin as f64 * bin_hz).powi(2)).collect();
-        let window: Vec<f64> = (0..WINDOW)
-            .map(|i| 0.5 - 0.5 * (std::f64::consts::TAU * (i as f64 + 0.5) / WINDOW as f64).cos())
-            .collect();
-        let fft = FftPlanner::new().plan_fft_forward(LENGTH);
-        let mut block = vec![Complex::new(0.0, 0.0); LENGTH];
+        let spectra = PowerSpectra::new(hann(WINDOW, 0.5), LENGTH);
         let shares = time_s
             .iter()
             .map(|t| {
                 let first = (t * RATE_HZ).round() as isize - WINDOW as isize / 2;
-                block.fill(Complex::new(0.0, 0.0));
-                for (i, w) in window.iter().enumerate() {
-                    if let Some(x) = usize::try_from(first + i as isize).ok().and_then(|n| samples.get(n)) {
-                        block[i].re = w * x;
-                    }
-                }
-                fft.process(&mut block);
+                let power = spectra.of(samples_from(samples, first));
                 let mut share = vec![0.0_f32; cells_hz.len()];
                 for bin in 1..LENGTH / 2 {
                     let hz = bin as f64 * bin_hz;
                     let cell = cells_hz.partition_point(|cell| *cell < hz).min(cells_hz.len() - 1);
-                    share[cell] += (block[bin].norm_sqr() * weights[bin]) as f32;
+                    share[cell] += (power[bin] * weights[bin]) as f32;
                 }
                 share
             })

@@ -76,25 +76,6 @@ pub struct SolvedBody {
     pub told: Vec<String>,
 }
 
-impl SolvedBody {
-    /// Shape `factor` times as large, of another stiffness and density: exact, without a new solve.
-    ///
-    /// f ∝ √(E/ρ)/s, φ ∝ (ρ s³)^−½. Poisson's ratio stays; another one needs a solve.
-    #[must_use]
-    pub fn rescaled(&self, factor: f64, from: &Elastic, to: &Elastic) -> Self {
-        let pitch = (to.bar_speed_m_s() / from.bar_speed_m_s()) / factor;
-        let heavier = to.density_kg_m3 / from.density_kg_m3 * factor.powi(3);
-        let mut body = self.clone();
-        body.frequency_hz.iter_mut().for_each(|f| *f *= pitch);
-        body.field.points.iter_mut().flatten().for_each(|x| *x *= factor);
-        body.field.shapes.iter_mut().flatten().flatten().for_each(|x| *x /= heavier.sqrt());
-        body.field.gains.iter_mut().for_each(|g| *g /= heavier.sqrt());
-        body.volume_m3 *= factor.powi(3);
-        body.mass_kg *= heavier;
-        body
-    }
-}
-
 /// Makes a body of a mesh; `progress` hears the part done, 0 to 1.
 ///
 /// ```

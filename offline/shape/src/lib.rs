@@ -45,9 +45,9 @@ pub mod system;
 mod text;
 mod triangle_tree;
 pub mod unwrap;
-pub mod vector;
 pub mod volume_mesh;
 
+pub use asperity_dsp::vector;
 pub use body::{Fineness, Making, SolvedBody, make, make_as_fine_as};
 pub use elastic::Elastic;
 pub use error::ShapeError;

@@ -21,6 +21,8 @@ struct Reader<'a> {
     at: usize,
     binary: bool,
     swapped: bool,
+    /// Name of the section that is read.
+    section: &'a str,
 }
 
 fn wrong(at: &str, what: impl Into<String>) -> ShapeError {
@@ -28,6 +30,10 @@ fn wrong(at: &str, what: impl Into<String>) -> ShapeError {
 }
 
 impl<'a> Reader<'a> {
+    fn wrong(&self, what: impl Into<String>) -> ShapeError {
+        wrong(self.section, what)
+    }
+
     fn line(&mut self) -> Option<&'a str> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
@@ -35,7 +41,7 @@ impl<'a> Reader<'a> {
         std::str::from_utf8(&rest[..end]).ok().map(str::trim).or(Some(""))
     }
 
-    fn word(&mut self, section: &str) -> Result<&'a str, ShapeError> {
+    fn word(&mut self) -> Result<&'a str, ShapeError> {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         let skip = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
         let rest = &rest[skip..];
@@ -43,53 +49,71 @@ impl<'a> Reader<'a> {
         self.at += skip + end;
         match std::str::from_utf8(&rest[..end]) {
             Ok(word) if !word.is_empty() => Ok(word),
-            _ => Err(wrong(section, "is cut short")),
+            _ => Err(self.wrong("is cut short")),
         }
     }
 
-    fn take<const N: usize>(&mut self, section: &str) -> Result<[u8; N], ShapeError> {
-        let part = self.bytes.get(self.at..self.at + N).ok_or_else(|| wrong(section, "is cut short"))?;
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], ShapeError> {
+        let part = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk());
+        let mut bytes: [u8; N] = *part.ok_or_else(|| self.wrong("is cut short"))?;
         self.at += N;
-        let mut bytes: [u8; N] = part.try_into().map_err(|_| wrong(section, "is cut short"))?;
         if self.swapped {
             bytes.reverse();
         }
         Ok(bytes)
     }
 
-    fn float(&mut self, section: &str) -> Result<f64, ShapeError> {
+    fn float(&mut self) -> Result<f64, ShapeError> {
         if self.binary {
-            return Ok(f64::from_ne_bytes(self.take(section)?));
+            return Ok(f64::from_ne_bytes(self.take()?));
         }
-        let word = self.word(section)?;
-        word.parse().map_err(|_| wrong(section, format!("`{word}` is no number")))
-    }
-
-    fn parsed(&mut self, section: &str) -> Result<i64, ShapeError> {
-        let word = self.word(section)?;
-        word.parse().map_err(|_| wrong(section, format!("`{word}` is no whole number")))
+        let word = self.word()?;
+        word.parse().map_err(|_| self.wrong(format!("`{word}` is no number")))
     }
 
     /// A number that binary files keep in four bytes.
-    fn int(&mut self, section: &str) -> Result<i64, ShapeError> {
+    fn int(&mut self) -> Result<i64, ShapeError> {
         if self.binary {
-            Ok(i64::from(i32::from_ne_bytes(self.take(section)?)))
-        } else {
-            self.parsed(section)
+            return Ok(i64::from(i32::from_ne_bytes(self.take()?)));
         }
+        let word = self.word()?;
+        word.parse().map_err(|_| self.wrong(format!("`{word}` is no whole number")))
     }
 
     /// A number that binary files keep in eight bytes.
-    fn size(&mut self, section: &str) -> Result<i64, ShapeError> {
-        if self.binary { Ok(i64::from_ne_bytes(self.take(section)?)) } else { self.parsed(section) }
+    fn size(&mut self) -> Result<i64, ShapeError> {
+        if self.binary { Ok(i64::from_ne_bytes(self.take()?)) } else { self.int() }
     }
 
-    fn count(&mut self, section: &str, eight: bool) -> Result<usize, ShapeError> {
-        let n = if eight { self.size(section)? } else { self.int(section)? };
-        usize::try_from(n)
-            .ok()
-            .filter(|&n| n <= MOST)
-            .ok_or_else(|| wrong(section, format!("tells of {n} entries, of which at most {MOST} are read")))
+    fn count(&self, n: i64) -> Result<usize, ShapeError> {
+        let count = usize::try_from(n).ok().filter(|&n| n <= MOST);
+        count.ok_or_else(|| self.wrong(format!("tells of {n} entries, of which at most {MOST} are read")))
+    }
+
+    /// The count of version 2: a line of text even in binary files.
+    fn counted_line(&mut self) -> Result<usize, ShapeError> {
+        let line = self.line().unwrap_or_default();
+        let count = line.parse().ok().filter(|&n| n <= MOST);
+        count.ok_or_else(|| self.wrong(format!("`{line}` is no count")))
+    }
+
+    /// The head of a section of version 4: how many blocks it has.
+    fn blocks(&mut self) -> Result<usize, ShapeError> {
+        let blocks = self.size()?;
+        for _ in 0..3 {
+            self.size()?;
+        }
+        self.count(blocks)
+    }
+
+    /// The nodes of an element of a type of Gmsh.
+    fn nodes_of(&self, kind: i64) -> Result<usize, ShapeError> {
+        const NODES: [usize; 31] = [
+            2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6,
+            20, 35, 56,
+        ];
+        let nodes = usize::try_from(kind - 1).ok().and_then(|i| NODES.get(i)).copied();
+        nodes.ok_or_else(|| self.wrong(format!("element type {kind} is unknown")))
     }
 }
 
@@ -105,43 +129,30 @@ struct Found {
     between: Between,
 }
 
-/// Nodes of an element type of Gmsh.
-fn nodes_of(kind: i64) -> Option<usize> {
-    const NODES: [usize; 31] = [
-        2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20,
-        35, 56,
-    ];
-    usize::try_from(kind - 1).ok().and_then(|i| NODES.get(i)).copied()
-}
-
 /// Reads a `.msh` file.
 ///
 /// # Errors
 /// When it is cut short, of another version, holds solids other than tetrahedra, or names nodes
 /// that are not there.
 pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
-    let mut reader = Reader { bytes, at: 0, binary: false, swapped: false };
+    let mut reader = Reader { bytes, at: 0, binary: false, swapped: false, section: "" };
     let mut version = None;
     let mut found = Found::default();
     while let Some(line) = reader.line() {
+        reader.section = line;
         match line {
             "$MeshFormat" => version = Some(format(&mut reader)?),
             "$Nodes" => match version {
                 Some(4) => nodes_4(&mut reader, &mut found)?,
                 Some(_) => nodes_2(&mut reader, &mut found)?,
-                None => return Err(wrong("$Nodes", "comes before $MeshFormat")),
+                None => return Err(reader.wrong("comes before $MeshFormat")),
             },
             "$ParametricNodes" => {
                 let right = "save it without them (Gmsh: Mesh.SaveParametric = 0)";
                 return Err(ShapeError::new(line, "are nodes with places on their surfaces", right));
             }
-            "$Elements" => {
-                if version == Some(4) {
-                    elements_4(&mut reader, &mut found)?;
-                } else {
-                    elements_2(&mut reader, &mut found)?;
-                }
-            }
+            "$Elements" if version == Some(4) => elements_4(&mut reader, &mut found)?,
+            "$Elements" => elements_2(&mut reader, &mut found)?,
             _ => continue,
         }
         let end = format!("$End{}", &line[1..]);
@@ -150,7 +161,7 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
                 break;
             }
             if !next.is_empty() {
-                return Err(wrong(line, format!("does not end with {end}")));
+                return Err(reader.wrong(format!("does not end with {end}")));
             }
         }
     }
@@ -161,73 +172,60 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
 }
 
 fn format(reader: &mut Reader<'_>) -> Result<u32, ShapeError> {
-    let section = "$MeshFormat";
     let line = reader.line().unwrap_or_default();
     let words: Vec<&str> = line.split_whitespace().collect();
-    let [version, kind, size] = words[..] else { return Err(wrong(section, "is cut short")) };
+    let [version, kind, size] = words[..] else { return Err(reader.wrong("is cut short")) };
     if size != "8" {
-        return Err(wrong(section, format!("has numbers of {size} bytes")));
+        return Err(reader.wrong(format!("has numbers of {size} bytes")));
     }
     reader.binary = kind == "1";
     if reader.binary {
-        let one: [u8; 4] = reader.take(section)?;
+        let one: [u8; 4] = reader.take()?;
         reader.swapped = match i32::from_ne_bytes(one) {
             1 => false,
             _ if i32::from_ne_bytes(one).swap_bytes() == 1 => true,
-            _ => return Err(wrong(section, "has no byte order")),
+            _ => return Err(reader.wrong("has no byte order")),
         };
     }
     match version {
         "2.2" | "2.1" | "2" | "2.0" => Ok(2),
         "4.1" => Ok(4),
-        _ => Err(wrong(section, format!("is of version {version}"))),
+        _ => Err(reader.wrong(format!("is of version {version}"))),
     }
 }
 
 fn point(reader: &mut Reader<'_>, found: &mut Found, tag: i64) -> Result<(), ShapeError> {
-    let point = [reader.float("$Nodes")?, reader.float("$Nodes")?, reader.float("$Nodes")?];
+    let point = [reader.float()?, reader.float()?, reader.float()?];
     if point.iter().any(|x| !x.is_finite()) {
         let what = format!("node {tag} has a coordinate that is not a number");
         return Err(ShapeError::new("$Nodes", what, "must be finite metres"));
     }
     if found.numbers.insert(tag, found.points.len() as u32).is_some() {
-        return Err(wrong("$Nodes", format!("node {tag} is there twice")));
+        return Err(reader.wrong(format!("node {tag} is there twice")));
     }
     found.points.push(point);
     Ok(())
 }
 
 fn nodes_2(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
-    // The count is a line of text even in binary files.
-    let line = reader.line().unwrap_or_default();
-    let count: usize = line
-        .parse()
-        .ok()
-        .filter(|&n| n <= MOST)
-        .ok_or_else(|| wrong("$Nodes", format!("`{line}` is no count")))?;
-    for _ in 0..count {
-        let tag = reader.int("$Nodes")?;
+    for _ in 0..reader.counted_line()? {
+        let tag = reader.int()?;
         point(reader, found, tag)?;
     }
     Ok(())
 }
 
 fn nodes_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
-    let section = "$Nodes";
-    let blocks = reader.count(section, true)?;
-    for _ in 0..3 {
-        reader.size(section)?;
-    }
-    for _ in 0..blocks {
-        let dimension = reader.int(section)?;
-        reader.int(section)?;
-        let parametric = reader.int(section)? != 0;
-        let count = reader.count(section, true)?;
-        let tags = (0..count).map(|_| reader.size(section)).collect::<Result<Vec<i64>, _>>()?;
+    for _ in 0..reader.blocks()? {
+        let dimension = reader.int()?;
+        reader.int()?;
+        let parametric = reader.int()? != 0;
+        let count = reader.size()?;
+        let tags = (0..reader.count(count)?).map(|_| reader.size()).collect::<Result<Vec<i64>, _>>()?;
         for tag in tags {
             point(reader, found, tag)?;
             for _ in 0..if parametric { dimension } else { 0 } {
-                reader.float(section)?;
+                reader.float()?;
             }
         }
     }
@@ -252,34 +250,25 @@ fn element(found: &mut Found, kind: i64, nodes: &[i64]) {
 }
 
 fn elements_2(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
-    let section = "$Elements";
-    let line = reader.line().unwrap_or_default();
-    let count: usize = line
-        .parse()
-        .ok()
-        .filter(|&n| n <= MOST)
-        .ok_or_else(|| wrong(section, format!("`{line}` is no count")))?;
-    let unknown = |kind: i64| wrong(section, format!("element type {kind} is unknown"));
-    let mut left = count;
+    let mut left = reader.counted_line()?;
     while left > 0 {
+        // A text has a number before each element, a binary file a head before groups of them.
         let (kind, group, tags) = if reader.binary {
-            (reader.int(section)?, reader.count(section, false)?.min(left), reader.count(section, false)?)
+            (reader.int()?, reader.int()?, reader.int()?)
         } else {
-            reader.int(section)?;
-            (reader.int(section)?, 1, reader.count(section, false)?)
+            reader.int()?;
+            (reader.int()?, 1, reader.int()?)
         };
-        let nodes = nodes_of(kind).ok_or_else(|| unknown(kind))?;
+        let (group, tags) = (reader.count(group)?.min(left), reader.count(tags)?);
+        let nodes = reader.nodes_of(kind)?;
         if group == 0 {
-            return Err(wrong(section, "has an empty group"));
+            return Err(reader.wrong("has an empty group"));
         }
         for _ in 0..group {
-            if reader.binary {
-                reader.int(section)?;
+            for _ in 0..tags + usize::from(reader.binary) {
+                reader.int()?;
             }
-            for _ in 0..tags {
-                reader.int(section)?;
-            }
-            let nodes = (0..nodes).map(|_| reader.int(section)).collect::<Result<Vec<i64>, _>>()?;
+            let nodes = (0..nodes).map(|_| reader.int()).collect::<Result<Vec<i64>, _>>()?;
             element(found, kind, &nodes);
         }
         left -= group;
@@ -288,21 +277,14 @@ fn elements_2(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeErr
 }
 
 fn elements_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
-    let section = "$Elements";
-    let blocks = reader.count(section, true)?;
-    for _ in 0..3 {
-        reader.size(section)?;
-    }
-    for _ in 0..blocks {
-        reader.int(section)?;
-        reader.int(section)?;
-        let kind = reader.int(section)?;
-        let count = reader.count(section, true)?;
-        let nodes =
-            nodes_of(kind).ok_or_else(|| wrong(section, format!("element type {kind} is unknown")))?;
-        for _ in 0..count {
-            reader.size(section)?;
-            let nodes = (0..nodes).map(|_| reader.size(section)).collect::<Result<Vec<i64>, _>>()?;
+    for _ in 0..reader.blocks()? {
+        reader.int()?;
+        reader.int()?;
+        let (kind, count) = (reader.int()?, reader.size()?);
+        let nodes = reader.nodes_of(kind)?;
+        for _ in 0..reader.count(count)? {
+            reader.size()?;
+            let nodes = (0..nodes).map(|_| reader.size()).collect::<Result<Vec<i64>, _>>()?;
             element(found, kind, &nodes);
         }
     }
@@ -316,10 +298,8 @@ fn assemble(found: Found) -> Result<Mesh, ShapeError> {
         return Err(ShapeError::new("$Elements", what, "must be 4-node tetrahedra (type 4)"));
     }
     let number = |tag: i64| {
-        numbers
-            .get(&tag)
-            .copied()
-            .ok_or_else(|| wrong("$Elements", format!("names node {tag}, which is not there")))
+        let unknown = || wrong("$Elements", format!("names node {tag}, which is not there"));
+        numbers.get(&tag).copied().ok_or_else(unknown)
     };
     if tets.is_empty() {
         if triangles.is_empty() {

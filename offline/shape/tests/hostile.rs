@@ -123,24 +123,6 @@ fn what_is_no_body_is_refused_with_the_reason() {
     assert!(message.contains("no tetrahedron"), "{message}");
 }
 
-#[test]
-fn another_size_and_stiffness_need_no_new_solve() {
-    let mesh = common::block([0.1, 0.06, 0.03], [5, 3, 2]);
-    let body = made(Mesh::Volume(mesh.clone()), None).unwrap();
-    let lead = Elastic { young_pa: 16e9, density_kg_m3: 11_340.0, ..MATERIAL };
-    let rescaled = body.rescaled(2.5, &MATERIAL, &lead);
-    let wanted = Wanted { up_to_hz: None, most: 4 };
-    let making = Making { material: lead, size_m: Some(0.25), unit_m: None, thickness_m: None, wanted };
-    let solved = make(Mesh::Volume(mesh), &making, &mut |_| ()).unwrap();
-    for (m, (a, b)) in rescaled.frequency_hz.iter().zip(&solved.frequency_hz).enumerate() {
-        assert!(
-            (a / b - 1.0).abs() < 1e-9
-                && (rescaled.field.gains[m] / solved.field.gains[m] - 1.0).abs() < 1e-6
-        );
-    }
-    assert!((rescaled.mass_kg / solved.mass_kg - 1.0).abs() < 1e-9);
-}
-
 /// Deals the triangles out in another order, each begun at another corner.
 fn shuffled(mesh: &SurfaceMesh, step: usize) -> SurfaceMesh {
     let n = mesh.triangles.len();

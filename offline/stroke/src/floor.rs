@@ -4,8 +4,8 @@
 //! is taken for white: the largest white power that leaves the bands above 150 Hz on a
 //! straight line of a power law through the probe.
 
-use crate::db;
 use crate::recording::{STANDSTILL_M_S, Window};
+use crate::{db, running_sums};
 
 /// Lowest band that a white floor is read from, Hz.
 const WHITE_FROM_HZ: f64 = 150.0;
@@ -51,10 +51,7 @@ pub fn find(windows: &[Window]) -> Floor {
 
 /// Means over a sixth of an octave: a second of standstill has few windows.
 fn smooth(density: &[f64]) -> Vec<f64> {
-    let mut sums = vec![0.0; density.len() + 1];
-    for (i, value) in density.iter().enumerate() {
-        sums[i + 1] = sums[i] + value;
-    }
+    let sums = running_sums(density);
     let near = |i: usize| {
         let reach = (i / 16).max(2);
         let (from, to) = (i.saturating_sub(reach), (i + reach + 1).min(density.len()));

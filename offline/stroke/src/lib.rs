@@ -59,14 +59,17 @@ impl StrokeError {
     }
 }
 
+/// Sums of so many first values, from none on.
+fn running_sums(values: &[f64]) -> Vec<f64> {
+    let sums = values.iter().scan(0.0, |sum, value| {
+        *sum += value;
+        Some(*sum)
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
 /// Power as a level, dB.
 #[must_use]
 pub fn db(power: f64) -> f64 {
     10.0 * power.max(f64::MIN_POSITIVE).log10()
-}
-
-/// Hann window of so many samples.
-fn hann(samples: usize) -> impl Iterator<Item = f64> {
-    let turn = 2.0 * std::f64::consts::PI / samples as f64;
-    (0..samples).map(move |i| 0.5 - 0.5 * (turn * i as f64).cos())
 }

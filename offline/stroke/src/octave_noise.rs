@@ -1,12 +1,10 @@
 //! Octaves of the engine's micro-relief as they are: their wavelengths, and their spectra along a
 //! line, read from the noise itself.
 
-use crate::hann;
 use crate::relief::wavenumber;
 use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, OctaveWeights};
 use asperity_dsp::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
-use asperity_fft::FftPlanner;
-use asperity_fft::num_complex::Complex;
+use asperity_fft::{PowerSpectra, hann};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -56,7 +54,7 @@ pub(crate) fn octave_spectrum(
     let weights = weights.with_gains_db(&alone);
     let step_m = LONGEST_CELL_M / (1u64 << octave) as f64 / STEPS_A_CELL;
     let mut density = vec![0.0; LENGTH / 2];
-    let transform = FftPlanner::new().plan_fft_forward(LENGTH);
+    let spectra = PowerSpectra::new(hann(LENGTH, 0.0), LENGTH);
     const WAYS: [f64; 3] = [0.0, 0.7, 1.9];
     for (turn, way) in WAYS.into_iter().enumerate() {
         let (sin, cos) = f64::sin_cos(way);
@@ -72,11 +70,8 @@ pub(crate) fn octave_spectrum(
             &weights,
             &mut height_m,
         );
-        let mut bins: Vec<Complex<f64>> =
-            height_m.iter().zip(hann(LENGTH)).map(|(h, w)| Complex::new(h * w, 0.0)).collect();
-        transform.process(&mut bins);
         let scale = 2.0 * step_m / (0.375 * LENGTH as f64) / WAYS.len() as f64;
-        density.iter_mut().zip(&bins).for_each(|(sum, bin)| *sum += scale * bin.norm_sqr());
+        density.iter_mut().zip(spectra.of(height_m)).for_each(|(sum, bin)| *sum += scale * bin);
     }
     let bin_q = 1.0 / (LENGTH as f64 * step_m);
     bands

@@ -1,10 +1,9 @@
 //! Profile of a stroke: felt height at equal steps of place.
 
-use crate::hann;
 use crate::recording::Stroke;
 use crate::tool::Tool;
-use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
+use asperity_fft::{FftPlanner, PowerSpectra, hann};
 
 /// Band of the recording that lines are looked for in, Hz.
 const BAND_HZ: (f64, f64) = (15.0, 1200.0);
@@ -83,12 +82,10 @@ pub(crate) fn at_places(height_m: &[f64], path_m: &[f64], stroke: &Stroke) -> Pr
 pub(crate) fn spectrum(profile: &Profile) -> (Vec<f64>, f64) {
     let count = profile.height_m.len();
     let length = (PADDED * count).next_power_of_two();
-    let mut bins: Vec<Complex<f64>> =
-        profile.height_m.iter().zip(hann(count)).map(|(h, w)| Complex::new(h * w, 0.0)).collect();
-    bins.resize(length, Complex::default());
-    FftPlanner::new().plan_fft_forward(length).process(&mut bins);
+    let spectra = PowerSpectra::new(hann(count, 0.0), length);
     let scale = (4.0 / count as f64).powi(2);
-    let power = bins[..length / 2].iter().map(|bin| scale * bin.norm_sqr()).collect();
+    let power = spectra.of(profile.height_m.iter().copied());
+    let power = power[..length / 2].iter().map(|power| scale * power).collect();
     (power, 1.0 / (length as f64 * profile.step_m))
 }
 

@@ -1,9 +1,7 @@
 //! Recorded strokes, and their power density window by window.
 
-use crate::hann;
 use crate::tool::Tool;
-use asperity_fft::FftPlanner;
-use asperity_fft::num_complex::Complex;
+use asperity_fft::{PowerSpectra, hann};
 
 /// Speed or force along a stroke.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,9 +111,8 @@ pub fn respond(windows: &mut [Window], tool: &Tool) {
 pub fn windows(stroke: &Stroke, index: usize, length_s: f64) -> Vec<Window> {
     let length = ((length_s * stroke.rate_hz) as usize).clamp(64, stroke.len().max(64));
     let hop = length / 2;
-    let hann: Vec<f64> = hann(length).collect();
-    let power: f64 = hann.iter().map(|w| w * w).sum();
-    let transform = FftPlanner::new().plan_fft_forward(length);
+    let spectra = PowerSpectra::new(hann(length, 0.0), length);
+    let power = spectra.energy();
     let mut from = 0;
     let mut all = Vec::new();
     while from + length <= stroke.len() {
@@ -123,11 +120,8 @@ pub fn windows(stroke: &Stroke, index: usize, length_s: f64) -> Vec<Window> {
         for axis in &stroke.axes {
             let part = &axis[from..from + length];
             let mean = part.iter().sum::<f64>() / length as f64;
-            let mut bins: Vec<Complex<f64>> =
-                part.iter().zip(&hann).map(|(x, w)| Complex::new((x - mean) * w, 0.0)).collect();
-            transform.process(&mut bins);
-            for (sum, bin) in density.iter_mut().zip(&bins) {
-                *sum += 2.0 * bin.norm_sqr() / (power * stroke.rate_hz);
+            for (sum, bin) in density.iter_mut().zip(spectra.of(part.iter().map(|x| x - mean))) {
+                *sum += 2.0 * bin / (power * stroke.rate_hz);
             }
         }
         all.push(Window {

@@ -12,7 +12,7 @@
 use asperity_dsp::actuator::{Skin, SkinState};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::mode::Mode;
-use asperity_fft::FftPlanner;
+use asperity_fft::PowerSpectra;
 use asperity_fft::num_complex::Complex;
 use std::f64::consts::PI;
 
@@ -96,11 +96,9 @@ impl Tool {
         if self.probe.ridge_m > 0.0 && self.quantity == Quantity::Acceleration {
             let skin = Skin::new(self.probe.ridge_m, speed_m_s, force_n, rate_hz);
             let mut state = SkinState::default();
-            let mut through: Vec<Complex<f64>> = (0..2 * bins)
-                .map(|n| Complex::new(state.tick(&skin, if n == 0 { 1.0 } else { 0.0 }), 0.0))
-                .collect();
-            FftPlanner::new().plan_fft_forward(2 * bins).process(&mut through);
-            power.iter_mut().zip(&through).for_each(|(power, bin)| *power *= bin.norm_sqr());
+            let answer = (0..2 * bins).map(|n| state.tick(&skin, if n == 0 { 1.0 } else { 0.0 }));
+            let through = PowerSpectra::new(vec![1.0; 2 * bins], 2 * bins).of(answer);
+            power.iter_mut().zip(through).for_each(|(power, bin)| *power *= bin);
         }
         power
     }

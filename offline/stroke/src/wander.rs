@@ -2,6 +2,7 @@
 
 use crate::profile::{Profile, at_places, held, spectrum};
 use crate::recording::Stroke;
+use crate::running_sums;
 use asperity_fft::FftPlanner;
 use asperity_fft::num_complex::Complex;
 use std::f64::consts::PI;
@@ -27,10 +28,7 @@ pub(crate) fn hump(profile: &Profile) -> Option<Hump> {
     if high <= low + 64 {
         return None;
     }
-    let mut sums = vec![0.0; power.len() + 1];
-    for (i, value) in power.iter().enumerate() {
-        sums[i + 1] = sums[i] + value;
-    }
+    let sums = running_sums(&power);
     let mean = |from: usize, to: usize| {
         let (from, to) = (from.max(low), to.min(high));
         (sums[to.max(from)] - sums[from]) / (to.max(from + 1) - from) as f64
@@ -151,10 +149,7 @@ fn phase_along(profile: &Profile, q: f64, half: f64) -> Vec<f64> {
     // Of the deviation from a straight phase, so that the ends do not bend.
     let slope = (phase[count - 1] - phase[0]) / (count - 1) as f64;
     phase.iter_mut().enumerate().for_each(|(i, phase)| *phase -= slope * i as f64);
-    let mut sums = vec![0.0; count + 1];
-    for (i, value) in phase.iter().enumerate() {
-        sums[i + 1] = sums[i] + value;
-    }
+    let sums = running_sums(&phase);
     (0..count)
         .map(|i| {
             let reach = reach.min(i).min(count - 1 - i);

@@ -127,12 +127,6 @@ impl Erosion {
         self.active.iter().all(|&rows| rows == 0)
     }
 
-    /// Tiles that the next pass looks at.
-    #[must_use]
-    pub fn active_tiles(&self) -> usize {
-        self.active.iter().filter(|&&rows| rows != 0).count()
-    }
-
     /// One pass over the active rows; returns how many cells it looked at.
     pub fn pass(&mut self, grid: &mut SandGrid) -> usize {
         let tiles = self.active.len();

@@ -1,7 +1,7 @@
 //! The spline between four texels.
 
 use super::place::{AxisPlaces, ROOM};
-use super::vector::{Rows, Vector};
+use super::vector::{Lanes, Rows, Vector};
 
 /// Values and slopes of a block, each on its own so that lanes fill vectors.
 #[derive(Debug, Clone)]
@@ -40,12 +40,12 @@ pub(super) struct Cell {
 #[inline(always)]
 fn to_powers<V: Rows>(v: V, c: [V::Lanes; 4]) -> [V::Lanes; 4] {
     let (half, sixth) = (v.splat(0.5), v.splat(1.0 / 6.0));
-    let outer = v.add(c[0], c[2]);
+    let outer = c[0] + c[2];
     [
-        v.mul(v.add(v.mul(v.splat(4.0), c[1]), outer), sixth),
-        v.mul(half, v.sub(c[2], c[0])),
-        v.sub(v.mul(half, outer), c[1]),
-        v.mul(v.add(v.sub(c[3], c[0]), v.mul(v.splat(3.0), v.sub(c[1], c[2]))), sixth),
+        (v.splat(4.0) * c[1] + outer) * sixth,
+        half * (c[2] - c[0]),
+        half * outer - c[1],
+        (c[3] - c[0] + v.splat(3.0) * (c[1] - c[2])) * sixth,
     ]
 }
 
@@ -84,18 +84,18 @@ impl Cell {
             let (t, u) = (v.load(x.fraction(n)), v.load(y.fraction(n)));
             let mut level = [v.splat(0.0); 4];
             for j in 0..4 {
-                level[j] = cubic(v, heights[j], t);
+                level[j] = cubic(heights[j], t);
             }
-            put(v, cubic(v, level, u), &mut out.value, n);
+            put(v, cubic(level, u), &mut out.value, n);
             if SLOPES {
                 let mut rise = [v.splat(0.0); 4];
                 for j in 0..4 {
-                    rise[j] = quadratic(v, slopes[j], t);
+                    rise[j] = quadratic(slopes[j], t);
                 }
-                let along_u = cubic(v, rise, u);
-                let along_v = quadratic(v, [level[1], v.mul(two, level[2]), v.mul(three, level[3])], u);
-                put(v, v.mul(along_u, v.load(x.slope(n))), &mut out.slope_u, n);
-                put(v, v.mul(along_v, v.load(y.slope(n))), &mut out.slope_v, n);
+                let along_u = cubic(rise, u);
+                let along_v = quadratic([level[1], two * level[2], three * level[3]], u);
+                put(v, along_u * v.load(x.slope(n)), &mut out.slope_u, n);
+                put(v, along_v * v.load(y.slope(n)), &mut out.slope_v, n);
             }
         }
     }
@@ -103,14 +103,14 @@ impl Cell {
 
 /// a₀ + a₁ t + a₂ t² + a₃ t³.
 #[inline(always)]
-fn cubic<const N: usize, V: Vector<N>>(v: V, a: [V::Lanes; 4], t: V::Lanes) -> V::Lanes {
-    v.add(v.mul(quadratic(v, [a[1], a[2], a[3]], t), t), a[0])
+fn cubic<L: Lanes>(a: [L; 4], t: L) -> L {
+    quadratic([a[1], a[2], a[3]], t) * t + a[0]
 }
 
 /// a₀ + a₁ t + a₂ t².
 #[inline(always)]
-fn quadratic<const N: usize, V: Vector<N>>(v: V, a: [V::Lanes; 3], t: V::Lanes) -> V::Lanes {
-    v.add(v.mul(v.add(v.mul(a[2], t), a[1]), t), a[0])
+fn quadratic<L: Lanes>(a: [L; 3], t: L) -> L {
+    (a[2] * t + a[1]) * t + a[0]
 }
 
 /// Writes N places from `n` on; a block has room for whole vectors.

@@ -106,8 +106,8 @@ impl Places {
             let (copy, texel) = (v.splat(only.copy), v.splat(only.texel));
             let (whole, rest) = fractions.as_chunks_mut::<N>();
             for (fraction, position_m) in whole.iter_mut().zip(some) {
-                let t = v.mul(v.load(&position_m.map(|at_m| at_m[along])), texels_per_metre);
-                v.store(v.sub(v.sub(v.sub(t, half), copy), texel), fraction);
+                let t = v.load(&position_m.map(|at_m| at_m[along])) * texels_per_metre;
+                v.store(t - half - copy - texel, fraction);
             }
             let first = some.len() * N;
             for (fraction, position_m) in

@@ -6,17 +6,18 @@
 use asperity_dsp::simd::Set;
 use asperity_dsp::simd::fearless_simd::prelude::*;
 use asperity_dsp::simd::fearless_simd::{f32x4, f64x4, f64x8};
+use std::ops::{Add, Mul, Sub};
+
+/// Several `f64`.
+pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 /// An instruction set that works on N `f64` at once.
 pub(super) trait Vector<const N: usize>: Copy {
     /// N `f64`.
-    type Lanes: Copy;
+    type Lanes: Lanes;
     fn splat(self, x: f64) -> Self::Lanes;
     fn load(self, from: &[f64; N]) -> Self::Lanes;
     fn store(self, x: Self::Lanes, to: &mut [f64; N]);
-    fn add(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
-    fn sub(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
-    fn mul(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
     /// Number of lanes from the first on that hold equal numbers.
     fn equal_lanes(self, a: Self::Lanes, b: Self::Lanes) -> usize;
 }
@@ -40,6 +41,7 @@ pub(super) struct Eight<S>(pub S);
 
 macro_rules! vector {
     ($name:ident, $n:literal, $lanes:ident) => {
+        impl<S: Set> Lanes for $lanes<S> {}
         impl<S: Set> Vector<$n> for $name<S> {
             type Lanes = $lanes<S>;
             #[inline(always)]
@@ -53,18 +55,6 @@ macro_rules! vector {
             #[inline(always)]
             fn store(self, x: $lanes<S>, to: &mut [f64; $n]) {
                 x.store_array(to);
-            }
-            #[inline(always)]
-            fn add(self, a: $lanes<S>, b: $lanes<S>) -> $lanes<S> {
-                a + b
-            }
-            #[inline(always)]
-            fn sub(self, a: $lanes<S>, b: $lanes<S>) -> $lanes<S> {
-                a - b
-            }
-            #[inline(always)]
-            fn mul(self, a: $lanes<S>, b: $lanes<S>) -> $lanes<S> {
-                a * b
             }
             #[inline(always)]
             fn equal_lanes(self, a: $lanes<S>, b: $lanes<S>) -> usize {

@@ -1,10 +1,10 @@
 //! A case as files: its scene, log, map, and the body they share.
 
 use super::{Case, LENGTH_M, TEXELS};
+use crate::demo::scenes::plate_modes;
 use crate::error::CliError;
 use asperity::files::Memory;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
-use asperity::{ModalModel, Mode};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine};
 use asperity_plot::pixels;
 use std::path::Path;
 
@@ -18,26 +18,6 @@ const REPORT_RATE_HZ: f64 = 60.0;
 pub const STROKE_S: (f64, f64) = (0.05, 0.6);
 /// The body's file.
 const MODES: &str = "plate.modes.json";
-
-/// A plate of nine modes that is heard up to 4.3 kHz.
-pub fn plate() -> ModalModel {
-    const RATIO: [f64; 9] = [5.25, 9.08, 12.2, 20.5, 21.5, 33.1, 35.3, 38.6, 53.0];
-    let modes = RATIO.iter().enumerate().map(|(index, ratio)| {
-        let frequency_hz = 430.0 * ratio / RATIO[0];
-        Mode {
-            frequency_hz,
-            decay_per_s: 25.0 + 0.03 * frequency_hz,
-            amplitude: 0.3 / (1.0 + 0.35 * index as f64),
-            phase_rad: 0.0,
-        }
-    });
-    ModalModel {
-        source: "free circular plate, chosen damping".to_owned(),
-        impulse_n_s: 0.01,
-        modes: modes.collect(),
-        ..ModalModel::silent()
-    }
-}
 
 /// The scene file: everything that a re-integration has to know stands in it.
 fn toml(case: &Case, seed: u64, excitation: Option<&str>) -> String {
@@ -109,25 +89,17 @@ pub fn move_along(log: &mut ContactLog, by_m: f64) {
 fn log(case: &Case) -> ContactLog {
     let (begin_s, end_s) = STROKE_S;
     let reports = ((end_s - begin_s) * REPORT_RATE_HZ) as usize;
-    let mut lines: Vec<LogLine> = (0..reports)
-        .map(|report| {
-            let since_s = report as f64 / REPORT_RATE_HZ;
-            let sample = ContactSample {
-                uv: [0.1 + case.speed_m_s * since_s / LENGTH_M, 0.5],
-                velocity_m_s: Some([case.speed_m_s, 0.0]),
-                normal_force_n: case.force_n,
-                ..ContactSample::default()
-            };
-            let event = if report == 0 {
-                LogEvent::begin(1, "ground", 0, sample)
-            } else {
-                LogEvent::moved(1, sample)
-            };
-            LogLine { t: begin_s + since_s, event }
-        })
-        .collect();
-    lines.push(LogLine { t: end_s, event: LogEvent::End { contact: 1 } });
-    ContactLog { lines }
+    let samples = (0..reports).map(|report| {
+        let since_s = report as f64 / REPORT_RATE_HZ;
+        let sample = ContactSample {
+            uv: [0.1 + case.speed_m_s * since_s / LENGTH_M, 0.5],
+            velocity_m_s: Some([case.speed_m_s, 0.0]),
+            normal_force_n: case.force_n,
+            ..ContactSample::default()
+        };
+        (begin_s + since_s, sample)
+    });
+    ContactLog { lines: LogLine::contact(1, ("ground", LogHand::felt_by(0)), samples, end_s) }
 }
 
 /// Names and contents of a case's files.
@@ -136,11 +108,9 @@ fn log(case: &Case) -> ContactLog {
 /// Never but by a defect.
 pub fn files(case: &Case, seed: u64, excitation: Option<&str>) -> Result<Vec<(String, Vec<u8>)>, CliError> {
     let name = case.name;
-    let mut lines = Vec::new();
-    log(case).write(&mut lines).map_err(CliError::from_error)?;
     let mut files = vec![
-        (MODES.to_owned(), plate().to_json().into_bytes()),
-        (format!("{name}.jsonl"), lines),
+        (MODES.to_owned(), plate_modes().to_json().into_bytes()),
+        (format!("{name}.jsonl"), log(case).to_jsonl().into_bytes()),
         (format!("{name}.toml"), toml(case, seed, excitation).into_bytes()),
     ];
     if let Some((heights, _)) = case.ground.map(seed) {

@@ -16,7 +16,7 @@
 mod files;
 mod render;
 
-pub use files::{SEEDS, STROKE_S, files, memory, move_along, plate};
+pub use files::{SEEDS, STROKE_S, files, memory, move_along};
 pub use render::{Chain, Signal, Take, take};
 
 use asperity_dsp::rng::Rng;

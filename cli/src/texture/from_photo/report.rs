@@ -1,6 +1,7 @@
 //! The report of `from-photo`: `report.json`, `--json` and the lines for people.
 
 use super::Options;
+use crate::output;
 use crate::texture::object::SizeMm;
 use asperity_pictures::from_photo::{DECIDED, PhotoSurface};
 use asperity_pictures::shape_from_shading::Method;
@@ -198,12 +199,10 @@ impl Report {
             let _ =
                 write!(text, "\nreduced by {} to {} × {} texels", self.reduced_by, self.width, self.height);
         }
-        for warning in &self.warnings {
-            let _ = write!(text, "\nwarning: {warning}");
-        }
         let _ = write!(
             text,
-            "\nwrote {} files to {}\nnext: asperity render {} -o {}",
+            "{}\nwrote {} files to {}\nnext: asperity render {} -o {}",
+            output::warned(&self.warnings),
             self.files.len(),
             options.output.display(),
             options.output.join("scene.toml").display(),

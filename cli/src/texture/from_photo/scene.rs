@@ -1,6 +1,8 @@
 //! Scenes, a stroke and a body to go with a photograph's maps, so that they render at once.
 
-use crate::error::CliError;
+use crate::scene_log::rounded;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine};
+use asperity::{ModalModel, Mode};
 use asperity_pictures::from_photo::{HeightCell, PhotoSurface};
 
 /// The generated stroke: speed, m/s, force, N, length, s, and events a second.
@@ -48,37 +50,25 @@ fn scene(source: &str, [width_m, height_m]: [f64; 2], micro_relief_m: f64, full_
 }
 
 /// A stroke across the middle, along u.
-pub(super) fn stroke([width_m, height_m]: [f64; 2]) -> String {
+pub(super) fn stroke([width_m, height_m]: [f64; 2]) -> ContactLog {
     let (speed, force, seconds, rate) = STROKE;
-    let steps = (seconds * rate) as usize;
-    let line = |step: usize| {
+    let samples = (0..(seconds * rate) as usize).map(|step| {
         let t = step as f64 / rate;
-        let event = if step == 0 { "\"begin\"" } else { "\"move\"" };
-        let place = if step == 0 { ",\"surface\":\"photo\",\"actuator\":0" } else { "" };
-        let closing = if step == 0 { ",\"closing_m_s\":0.02" } else { "" };
         // A slight diagonal, so that a repeated pattern is not met on one line only.
-        let uv = [0.05 + speed * t / width_m, 0.45 + 0.05 * speed * t / height_m];
-        format!(
-            "{{\"t\":{t:.6},\"event\":{event},\"contact\":1{place},\"uv\":[{:.9},{:.9}],\
-             \"velocity_m_s\":[{speed},{}],\"normal_force_n\":{force}{closing}}}\n",
-            uv[0],
-            uv[1],
-            0.05 * speed
-        )
-    };
-    let mut text: String = (0..steps).map(line).collect();
-    text.push_str(&format!("{{\"t\":{seconds:.6},\"event\":\"end\",\"contact\":1}}\n"));
-    text
+        let uv = [0.05 + speed * t / width_m, 0.45 + 0.05 * speed * t / height_m].map(|x| rounded(x, 9));
+        let sample = ContactSample::new(uv, force).sliding([speed, 0.05 * speed]);
+        (rounded(t, 6), ContactSample { closing_m_s: if step == 0 { 0.02 } else { 0.0 }, ..sample })
+    });
+    ContactLog { lines: LogLine::contact(1, ("photo", LogHand::felt_by(0)), samples, seconds) }
 }
 
-pub(super) fn modes() -> Result<String, CliError> {
-    let modes = MODES.map(|(frequency_hz, decay_per_s, amplitude)| {
-        serde_json::json!({ "frequency_hz": frequency_hz, "decay_per_s": decay_per_s, "amplitude": amplitude, "phase_rad": 0.0 })
-    });
-    let model = serde_json::json!({
-        "format": "asperity.modes", "version": 1, "source": "assumed: a free bar",
-        "impulse_n_s": 0.01, "modes": modes,
-    });
-    serde_json::to_string_pretty(&model)
-        .map_err(|error| CliError::new("surface.modes.json", error, "please report it with the photograph"))
+pub(super) fn modes() -> ModalModel {
+    let mode = |(frequency_hz, decay_per_s, amplitude)| Mode {
+        frequency_hz,
+        decay_per_s,
+        amplitude,
+        phase_rad: 0.0,
+    };
+    let (source, modes) = ("assumed: a free bar".to_owned(), MODES.map(mode).to_vec());
+    ModalModel { source, impulse_n_s: 0.01, modes, ..ModalModel::silent() }
 }

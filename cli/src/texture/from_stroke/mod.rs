@@ -8,12 +8,13 @@ mod scene;
 use super::positive;
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use crate::paths::has_end;
 use asperity_stroke::report::Report;
 use asperity_stroke::{Options as FitOptions, StrokeError, StrokeSurface, Tool, models, surface};
 use clap::{Args, ValueEnum};
 use input::Recorded;
 use report::Written;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Make a touchable surface of recorded strokes
 #[derive(Debug, Args)]
@@ -105,8 +106,7 @@ fn found(options: &Options, fit_options: &FitOptions) -> Result<StrokeSurface, C
     let first = &options.strokes[0];
     let at =
         |error: StrokeError| CliError::new(error.field, error.what, error.expected).within(first.display());
-    let is_models = |path: &Path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml"));
-    if options.strokes.iter().any(|path| is_models(path)) {
+    if options.strokes.iter().any(|path| has_end(path, &["xml"])) {
         if options.strokes.len() > 1 {
             return Err(CliError::file(
                 first,
@@ -137,7 +137,7 @@ fn write(
         outputs.write(&folder.join(name), text.as_bytes())
     };
     let ring = match &fit_options.tool.quantity {
-        asperity_stroke::Quantity::Sound(ring) => Some(scene::ring_file(ring)?),
+        asperity_stroke::Quantity::Sound(ring) => Some(scene::ring_file(ring).to_json()),
         _ => None,
     };
     if let Some(ring) = &ring {
@@ -145,7 +145,7 @@ fn write(
     }
     let map = scene::Map::of(found);
     text(&mut outputs, "scene.toml", &scene::scene(found, probe, map.as_ref(), ring.is_some()))?;
-    text(&mut outputs, "stroke.jsonl", &scene::stroke(found, map.as_ref()))?;
+    text(&mut outputs, "stroke.jsonl", &scene::stroke(found, map.as_ref()).to_jsonl())?;
     text(&mut outputs, "surface.svg", &picture::svg(&name(options), found))?;
     files.push("surface.json".to_owned());
     if let Some(map) = &map {
@@ -153,15 +153,9 @@ fn write(
         outputs.write(&folder.join("displacement.png"), &map.png)?;
     }
     let report = Written { report: Report::of(found), files };
-    let json = serde_json::to_string_pretty(&report)
-        .map_err(|error| CliError::new("surface.json", error, "please report it with the recording"))?;
-    outputs.write(&folder.join("surface.json"), json.as_bytes())?;
+    outputs.write_json(&folder.join("surface.json"), &report)?;
     outputs.commit()?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&report.in_words(folder));
-    Ok(())
+    output::say_report(&report, options.json, || report.in_words(folder))
 }
 
 fn name(options: &Options) -> String {

@@ -1,5 +1,6 @@
 //! Report of a surface from strokes: `surface.json`, and in words.
 
+use crate::output;
 use asperity_plot::quantity;
 use asperity_stroke::report::Report;
 use serde::Serialize;
@@ -45,11 +46,9 @@ impl Written<'_> {
         if let (Some(m_n), Some(se_m_n)) = (report.compliance_m_n, report.compliance_se_m_n) {
             text.push_str(&format!("\n  sinks {:.1} ± {:.1} µm/N", 1e6 * m_n, 1e6 * se_m_n));
         }
-        for warning in report.warnings {
-            text.push_str(&format!("\nwarning: {warning}"));
-        }
         text.push_str(&format!(
-            "\nwrote {}; hear and feel it: asperity render {} -o stroke",
+            "{}\nwrote {}; hear and feel it: asperity render {} -o stroke",
+            output::warned(report.warnings),
             self.files.join(", "),
             folder.join("scene.toml").display()
         ));

@@ -1,7 +1,9 @@
 //! Scene, stroke and map of a surface from strokes, which render at once.
 
 use super::input::NamedProbe;
-use crate::error::CliError;
+use crate::scene_log::rounded;
+use asperity::ModalModel;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogHand, LogLine};
 use asperity_stroke::StrokeSurface;
 use asperity_stroke::octaves::OUTER_SCALE_M;
 use asperity_stroke::pattern::{Pattern, TEXELS};
@@ -64,43 +66,21 @@ pub(super) fn scene(found: &StrokeSurface, probe: &NamedProbe, map: Option<&Map>
 }
 
 /// A stroke at the first speed and force that were recorded.
-pub(super) fn stroke(found: &StrokeSurface, map: Option<&Map>) -> String {
+pub(super) fn stroke(found: &StrokeSurface, map: Option<&Map>) -> ContactLog {
     let (speed, force) = (found.groups[0].speed_m_s, found.groups[0].force_n);
     let side_m = map.map_or(SIDE_M, |map| map.side_m);
     // Across the lines, a little aslant.
     let velocity = if map.is_some() { [speed, 0.0] } else { [0.99 * speed, 0.14 * speed] };
-    let mut text = String::new();
-    let last = (SECONDS * EVENTS_HZ) as usize;
-    for step in 0..last {
+    let samples = (0..(SECONDS * EVENTS_HZ) as usize).map(|step| {
         let t = step as f64 / EVENTS_HZ;
-        let uv = velocity.map(|v| 0.05 + v * t / side_m);
-        let event = if step == 0 { "\"begin\"" } else { "\"move\"" };
-        let place = if step == 0 { ",\"surface\":\"stroked\",\"actuator\":0" } else { "" };
-        text.push_str(&format!(
-            "{{\"t\":{t:.6},\"event\":{event},\"contact\":1{place},\"uv\":[{:.9},{:.9}],\"velocity_m_s\":[{:?},{:?}],\"normal_force_n\":{force:?}}}\n",
-            uv[0], uv[1], velocity[0], velocity[1]
-        ));
-    }
-    text.push_str(&format!("{{\"t\":{SECONDS:.6},\"event\":\"end\",\"contact\":1}}\n"));
-    text
+        let uv = velocity.map(|v| rounded(0.05 + v * t / side_m, 9));
+        (rounded(t, 6), ContactSample::new(uv, force).sliding(velocity))
+    });
+    ContactLog { lines: LogLine::contact(1, ("stroked", LogHand::felt_by(0)), samples, SECONDS) }
 }
 
 /// The ring as a modes file.
-pub(super) fn ring_file(ring: &Ring) -> Result<String, CliError> {
-    let modes: Vec<serde_json::Value> = ring
-        .0
-        .iter()
-        .map(|mode| {
-            serde_json::json!({
-                "frequency_hz": mode.frequency_hz, "decay_per_s": mode.decay_per_s,
-                "amplitude": mode.amplitude, "phase_rad": mode.phase_rad,
-            })
-        })
-        .collect();
-    let model = serde_json::json!({
-        "format": "asperity.modes", "version": 1, "source": "the body under a recorded stroke",
-        "impulse_n_s": 1.0, "modes": modes,
-    });
-    serde_json::to_string_pretty(&model)
-        .map_err(|error| CliError::new("ring.modes.json", error, "please report it with the recording"))
+pub(super) fn ring_file(ring: &Ring) -> ModalModel {
+    let source = "the body under a recorded stroke".to_owned();
+    ModalModel { source, impulse_n_s: 1.0, modes: ring.0.clone(), ..ModalModel::silent() }
 }

@@ -136,11 +136,4 @@ impl Confusion {
     pub fn mean(&self) -> f64 {
         (0..self.counts.len()).map(|class| self.right(class)).sum::<f64>() / self.counts.len() as f64
     }
-
-    /// Standard error of [`mean`](Self::mean) if `independent` trials were asked.
-    #[must_use]
-    pub fn standard_error(&self, independent: usize) -> f64 {
-        let p = self.mean();
-        (p * (1.0 - p) / independent.max(1) as f64).sqrt()
-    }
 }

@@ -1,7 +1,6 @@
 //! Power in bands, look by look and frame by frame.
 
-use asperity_fft::{FftPlanner, num_complex::Complex};
-use std::f64::consts::PI;
+use asperity_fft::{PowerSpectra, hann};
 
 /// A band: from, to, Hz.
 #[derive(Debug, Clone, Copy)]
@@ -22,28 +21,22 @@ pub(crate) fn looks(samples: usize, look: usize, most: usize) -> (Vec<usize>, us
 
 /// Power spectra of pieces of equal length through Hann windows.
 pub(crate) struct Spectra {
-    plan: std::sync::Arc<dyn asperity_fft::Fft<f64>>,
-    window: Vec<f64>,
+    spectra: PowerSpectra,
+    scale: f64,
     bin_hz: f64,
 }
 
 impl Spectra {
     pub(crate) fn new(length: usize, rate_hz: f64) -> Self {
-        let window: Vec<f64> =
-            (0..length).map(|i| 0.5 - 0.5 * (2.0 * PI * i as f64 / length as f64).cos()).collect();
-        Self { plan: FftPlanner::new().plan_fft_forward(length), window, bin_hz: rate_hz / length as f64 }
+        let spectra = PowerSpectra::new(hann(length, 0.0), length);
+        let scale = 2.0 / (spectra.energy() * length as f64);
+        Self { spectra, scale, bin_hz: rate_hz / length as f64 }
     }
 
     /// Mean square in each bin up to Nyquist.
     pub(crate) fn power(&self, piece: &[f64]) -> Vec<f64> {
-        let length = self.window.len();
-        let energy: f64 = self.window.iter().map(|w| w * w).sum();
-        let mut block: Vec<Complex<f64>> =
-            self.window.iter().zip(piece).map(|(w, x)| Complex::new(w * x, 0.0)).collect();
-        block.resize(length, Complex::new(0.0, 0.0));
-        self.plan.process(&mut block);
-        let scale = 2.0 / (energy * length as f64);
-        block[..length / 2 + 1].iter().map(|bin| scale * bin.norm_sqr()).collect()
+        let power = self.spectra.of(piece.iter().copied());
+        power.into_iter().map(|power| self.scale * power).collect()
     }
 
     /// Power of the bins whose centres lie in a band, each weighed by `weight(f)`. Whole bins, so

@@ -4,38 +4,23 @@ use super::{Columns, Found, columns};
 use crate::abx::Size;
 use crate::likeness;
 use crate::observer::{Confusion, Judge};
-use crate::plates::{self, CONDITIONS, PLATES};
+use crate::plates::{self, CONDITIONS, Make, PLATES};
 use crate::reliefs::{Relief, Shape};
-use asperity::Surface;
-use asperity::files::FileError;
 use asperity_surface::raster::Raster;
 use asperity_surface::solid_materials::SolidMaterial;
 
-/// Explorations of each class that are learnt, and asked.
-const LEARNT: (u64, u64) = (150_000, 16);
-const ASKED: (u64, u64) = (190_000, 16);
-
-type Make = dyn Fn(u64) -> Result<Surface, FileError>;
-
 fn judged(
-    of: &[Box<Make>],
+    of: &[Make],
     conditions: &[(&'static str, &[usize])],
     placed: bool,
 ) -> Result<Vec<plates::Table>, String> {
-    let surfaces: Vec<&Make> = of.iter().map(AsRef::as_ref).collect();
-    let run = || {
-        let pascals = plates::pascals()?;
-        let known = plates::lot(&surfaces, LEARNT, pascals, placed)?;
-        let asked = plates::lot(&surfaces, ASKED, pascals, placed)?;
-        Ok(plates::judge(&known, &asked, conditions))
-    };
-    run().map_err(|error: FileError| error.to_string())
+    let [known, asked] = plates::lots(of, 16, placed).map_err(|error| error.to_string())?;
+    Ok(plates::judge(&known, &asked, conditions))
 }
 
 /// Three confusion matrices of the six plates, row by row.
 pub fn six_plates() -> Result<Found, String> {
-    let of: Vec<Box<Make>> = PLATES.iter().map(|name| Box::new(move |_| plates::plate(name)) as _).collect();
-    let tables = judged(&of, &CONDITIONS, true)?;
+    let tables = judged(&plates::six_plates(), &CONDITIONS, true)?;
     let mut ours = Columns::new();
     let mut means = Vec::new();
     for table in &tables {
@@ -65,10 +50,7 @@ pub fn six_plates() -> Result<Found, String> {
 
 /// Share of right names of each of the seven materials.
 pub fn seven_materials() -> Result<Found, String> {
-    let of: Vec<Box<Make>> = SolidMaterial::SEVEN
-        .iter()
-        .map(|one| Box::new(move |seed| plates::material(*one, seed)) as _)
-        .collect();
+    let of = plates::seven_materials();
     let mut ours = Columns::new();
     let mut means = Vec::new();
     for table in judged(&of, &CONDITIONS[..1], false)? {

@@ -86,33 +86,11 @@ pub fn modes_to_csv(modes: &[Mode]) -> String {
     text
 }
 
-/// Modes of a CSV table.
+/// Modes of named columns of numbers.
 ///
 /// # Errors
 /// A missing column, a cell that is no number, a frequency not above 0, a negative decay, or no
 /// rows.
-pub fn from_csv(text: &str) -> Result<Vec<Mode>, TableError> {
-    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty() && !l.starts_with('#'));
-    let names: Vec<String> =
-        lines.next().unwrap_or("").split(',').map(|n| n.trim().to_ascii_lowercase()).collect();
-    let mut columns: Vec<(String, Vec<f64>)> = names.into_iter().map(|name| (name, Vec::new())).collect();
-    for (row, line) in lines.enumerate() {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        for (i, (_, column)) in columns.iter_mut().enumerate() {
-            let cell = cells.get(i).copied().unwrap_or("");
-            // Columns of words are nobody's business unless they are asked for.
-            let value = if cell.is_empty() { f64::NAN } else { cell.parse().unwrap_or(f64::NAN) };
-            debug_assert_eq!(column.len(), row);
-            column.push(value);
-        }
-    }
-    from_columns(&columns)
-}
-
-/// Modes of named columns of numbers.
-///
-/// # Errors
-/// As [`from_csv`].
 pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableError> {
     let find = |names: &[&str]| {
         columns.iter().find(|(name, _)| names.contains(&name.as_str())).map(|(_, values)| values.as_slice())
@@ -174,6 +152,17 @@ pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableEr
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn from_csv(text: &str) -> Result<Vec<Mode>, TableError> {
+        let mut rows = text.lines().map(|line| line.split(',').map(str::trim).collect::<Vec<_>>());
+        let names = rows.next().unwrap_or_default();
+        let rows: Vec<_> = rows.collect();
+        let number = |row: &Vec<&str>, i: usize| row[i].parse().unwrap_or(f64::NAN);
+        let column = |i: usize| rows.iter().map(|row| number(row, i)).collect();
+        from_columns(
+            &names.iter().enumerate().map(|(i, name)| (name.to_string(), column(i))).collect::<Vec<_>>(),
+        )
+    }
 
     #[test]
     fn modes_survive_csv_to_the_last_bit() {

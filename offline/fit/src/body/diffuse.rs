@@ -18,8 +18,7 @@
 //! loudness where the recording has none 1.7 points more.
 
 use asperity_dsp::diffuse::{DiffuseBand, DiffusePart, band_edges_hz};
-use asperity_fft::FftPlanner;
-use nalgebra::Complex;
+use asperity_fft::{PowerSpectra, hann, samples_from};
 
 /// Step and length of a frame, s, and number of frames that are smoothed.
 const STEP_S: f64 = 0.01;
@@ -165,24 +164,16 @@ fn best<'a>(shapes: &'a [Shape], cells: &[Cell]) -> Option<(&'a Shape, f64)> {
 fn powers(samples: &[f64], edges: &[f64], rate_hz: f64) -> Vec<Vec<f64>> {
     let length = (FRAME_S * rate_hz) as usize;
     let size = (2 * length).next_power_of_two();
-    let fft = FftPlanner::new().plan_fft_forward(size);
-    let window: Vec<f64> = (0..length)
-        .map(|n| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * (n as f64 + 0.5) / length as f64).cos())
-        .collect();
-    let scale = 2.0 / (size as f64 * window.iter().map(|w| w * w).sum::<f64>());
+    let spectra = PowerSpectra::new(hann(length, 0.5), size);
+    let scale = 2.0 / (size as f64 * spectra.energy());
     let step = STEP_S * rate_hz;
     let count = ((samples.len() as f64 / step) as usize).max(1);
     let frame = |i: usize| {
         let from = (i as f64 * step) as isize - (length / 2) as isize;
-        let at = |n: usize| usize::try_from(from + n as isize).ok().and_then(|n| samples.get(n));
-        let mut spectrum = vec![Complex::new(0.0, 0.0); size];
-        for (n, (x, w)) in spectrum.iter_mut().zip(&window).enumerate() {
-            x.re = w * at(n).copied().unwrap_or(0.0);
-        }
-        fft.process(&mut spectrum);
+        let power = spectra.of(samples_from(samples, from));
         // Power below the middle of each bin, and on a line within.
         let mut below = vec![0.0];
-        spectrum[..size / 2].iter().for_each(|x| below.push(below[below.len() - 1] + x.norm_sqr()));
+        power[..size / 2].iter().for_each(|power| below.push(below[below.len() - 1] + power));
         let at = |hz: f64| {
             let place = (hz * size as f64 / rate_hz + 0.5).min(below.len() as f64 - 1.001);
             let (bin, rest) = (place as usize, place.fract());

@@ -3,8 +3,7 @@
 //! Summarised so that a body can carry a short residual excitation: the level of the attack in
 //! octave bands, one value every 5 ms over the first tenth of a second.
 
-use asperity_fft::FftPlanner;
-use nalgebra::Complex;
+use asperity_fft::PowerSpectra;
 
 /// Step of the envelope, s, and how many there are.
 pub const STEP_S: f64 = 0.005;
@@ -13,7 +12,7 @@ const STEPS: usize = 20;
 const FIRST_EDGE_HZ: f64 = 250.0;
 
 /// One band's envelope.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BandEnvelope {
     /// Lower edge, Hz.
     pub low_hz: f64,
@@ -82,7 +81,7 @@ pub fn ratio_db(a: &[f64], b: &[f64]) -> f64 {
 
 fn band_envelopes(samples: &[f64], rate_hz: f64) -> Vec<BandEnvelope> {
     let step = ((STEP_S * rate_hz) as usize).max(8);
-    let fft = FftPlanner::new().plan_fft_forward(step);
+    let spectra = PowerSpectra::new(vec![1.0; step], step);
     let mut edges = vec![0.0];
     let mut edge = FIRST_EDGE_HZ;
     while edge < 0.5 * rate_hz {
@@ -95,13 +94,12 @@ fn band_envelopes(samples: &[f64], rate_hz: f64) -> Vec<BandEnvelope> {
         .map(|pair| BandEnvelope { low_hz: pair[0], high_hz: pair[1], rms: Vec::new() })
         .collect();
     for frame in samples.chunks_exact(step).take(STEPS) {
-        let mut spectrum: Vec<Complex<f64>> = frame.iter().map(|&x| Complex::new(x, 0.0)).collect();
-        fft.process(&mut spectrum);
+        let powers = spectra.of(frame.iter().copied());
         let bin_hz = rate_hz / step as f64;
         for band in &mut bands {
             let power: f64 = (0..=step / 2)
                 .filter(|&k| (band.low_hz..band.high_hz).contains(&(k as f64 * bin_hz)))
-                .map(|k| if k == 0 || 2 * k == step { 1.0 } else { 2.0 } * spectrum[k].norm_sqr())
+                .map(|k| if k == 0 || 2 * k == step { 1.0 } else { 2.0 } * powers[k])
                 .sum();
             band.rms.push(power.sqrt() / step as f64);
         }

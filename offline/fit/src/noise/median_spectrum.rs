@@ -2,8 +2,7 @@
 //! a mode that dies away touches little, and what a percentile of such medians is of the noise they
 //! come from.
 
-use asperity_fft::FftPlanner;
-use nalgebra::Complex;
+use asperity_fft::PowerSpectra;
 use std::f64::consts::PI;
 
 /// The percentile over frequency.
@@ -14,17 +13,12 @@ const EDGE_BINS: usize = 5;
 /// Median over time of the normalised power in every bin from 0 Hz to half the rate.
 pub(crate) fn medians(samples: &[f64], length: usize, starts: &[usize]) -> Vec<f64> {
     let window: Vec<f64> = (0..length).map(|i| blackman_harris(i as f64 / length as f64)).collect();
-    let norm: f64 = window.iter().map(|w| w * w).sum();
-    let fft = FftPlanner::new().plan_fft_forward(length);
+    let spectra = PowerSpectra::new(window, length);
+    let norm = spectra.energy();
     let mut powers = vec![Vec::with_capacity(starts.len()); length / 2 + 1];
-    let mut frame = vec![Complex::new(0.0, 0.0); length];
     for &start in starts {
-        for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
-            *value = Complex::new(x * w, 0.0);
-        }
-        fft.process(&mut frame);
-        for (bin, value) in powers.iter_mut().zip(&frame) {
-            bin.push(value.norm_sqr() / norm);
+        for (bin, power) in powers.iter_mut().zip(spectra.of(samples[start..].iter().copied())) {
+            bin.push(power / norm);
         }
     }
     let middle = median_rank(starts.len()) - 1;

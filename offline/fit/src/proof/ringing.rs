@@ -31,8 +31,7 @@
 use crate::noise::noise_floor::NoiseFloor;
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::projection::synthesise;
-use asperity_fft::FftPlanner;
-use nalgebra::Complex;
+use asperity_fft::PowerSpectra;
 use std::f64::consts::PI;
 
 /// Chance that noise is not recognised.
@@ -148,15 +147,11 @@ impl Cells {
         let length = view.length;
         let rate = WINDOW_NEPERS / length as f64;
         let window: Vec<f64> = (0..length).map(|n| n as f64 * rate).map(|x| x.powi(3) * (-x).exp()).collect();
-        let norm: f64 = window.iter().map(|w| w * w).sum();
-        let fft = FftPlanner::new().plan_fft_forward(length);
-        let mut frame = vec![Complex::new(0.0, 0.0); length];
-        let mut powers = |start: usize| -> Vec<f64> {
-            for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
-                *value = Complex::new(x * w, 0.0);
-            }
-            fft.process(&mut frame);
-            frame[..=length / 2].iter().map(|value| value.norm_sqr() / norm).collect()
+        let spectra = PowerSpectra::new(window, length);
+        let norm = spectra.energy();
+        let powers = |start: usize| -> Vec<f64> {
+            let powers = spectra.of(samples[start..].iter().copied());
+            powers.into_iter().map(|power| power / norm).collect()
         };
         let first = powers(0);
         let (mut compared, mut frames) = (first.clone(), 1.0);
@@ -234,6 +229,7 @@ fn running_sums(values: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use asperity_dsp::rng::Rng;
+    use nalgebra::Complex;
 
     /// Brown noise of unit steps that forgets after `1 / leak` samples, and white noise of its own.
     fn brown(leak: f64, count: usize, seed: u64) -> Vec<f64> {

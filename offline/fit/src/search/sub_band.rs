@@ -12,6 +12,7 @@
 //! All bands together cost one fold and one FFT of 2D points an output sample (weighted
 //! overlap-add).
 
+use asperity_dsp::bessel::bessel_i0;
 use asperity_fft::FftPlanner;
 use nalgebra::Complex;
 use std::f64::consts::PI;
@@ -124,17 +125,6 @@ fn kaiser_low_pass(decimation: usize) -> Vec<f64> {
     let sum: f64 = taps.iter().sum();
     taps.iter_mut().for_each(|h| *h /= sum);
     taps
-}
-
-/// Modified Bessel function of the first kind, order 0, by its power series.
-fn bessel_i0(x: f64) -> f64 {
-    let quarter = 0.25 * x * x;
-    let (mut term, mut sum) = (1.0, 1.0);
-    for k in 1..60 {
-        term *= quarter / f64::from(k * k);
-        sum += term;
-    }
-    sum
 }
 
 #[cfg(test)]

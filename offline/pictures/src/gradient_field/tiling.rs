@@ -89,13 +89,6 @@ impl Tiling {
     }
 }
 
-/// The surface that tiles whose slopes these are but for a noise, mean 0. `noise` is the variance
-/// in each that rounding leaves at the most; what is more is measured.
-#[must_use]
-pub fn integrate_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
-    Tiling::of(field).heights(derivative, noise, Walls::NONE)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,7 +102,7 @@ mod tests {
             (3.0 * u).cos() + 0.7 * (2.0 * u - 5.0 * v + 0.4).sin()
         });
         for derivative in crate::gradient_field::DERIVATIVES {
-            let made = integrate_rounded(&slopes(&surface, derivative), derivative, 0.0);
+            let made = Tiling::of(&slopes(&surface, derivative)).heights(derivative, 0.0, Walls::NONE);
             for (a, b) in made.values.iter().zip(&surface.values) {
                 assert!((a - b).abs() < 1e-11, "{derivative:?}");
             }
@@ -125,7 +118,7 @@ mod tests {
         let believed = power(crate::gradient_field::integrate_periodic(&field, Derivative::Central));
         // Whether the noise is known for rounding or not.
         for rounding in [1.0, 1e-9] {
-            let filtered = power(integrate_rounded(&field, Derivative::Central, rounding));
+            let filtered = power(Tiling::of(&field).heights(Derivative::Central, rounding, Walls::NONE));
             assert!(filtered < 0.2 * believed, "{rounding}: {filtered} of {believed}");
         }
     }

@@ -13,6 +13,7 @@ use super::blind::made_blind;
 use super::tiling::Tiling;
 use super::{DERIVATIVES, Derivative, Slopes, differences};
 use crate::fft2::{Fft2, angular_frequency};
+use crate::histogram::median;
 use asperity_fft::num_complex::Complex64;
 use asperity_surface::raster::Raster;
 use std::f64::consts::TAU;
@@ -168,9 +169,4 @@ fn place_of(derivative: Derivative) -> usize {
 
 fn hann(i: usize, n: usize) -> f64 {
     0.5 - 0.5 * (TAU * (i as f64 + 0.5) / n as f64).cos()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

@@ -92,13 +92,8 @@ pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCe
 /// Faithfulness of a pattern to its lattice all over the picture, 0–1: the variance of its mean
 /// cell over what texels have in common with those one translation on. 1 for a strict pattern,
 /// however noisy or unevenly lit; near 0 when cells are like their neighbours but drift, as scales
-/// on a bent skin do, and the mean of all of them is a blur.
-#[must_use]
-pub fn steadiness(picture: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
-    even_steadiness(&detrended(picture), lattice, averaged)
-}
-
-/// [`steadiness`] of a picture without its slow light.
+/// on a bent skin do, and the mean of all of them is a blur. The picture comes without its slow
+/// light.
 pub(crate) fn even_steadiness(even: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
     let [one, other] = [lattice.t1_px, lattice.t2_px].map(|t| {
         let (mut product, mut count) = (0.0, 0.0);
@@ -235,7 +230,7 @@ mod tests {
                 let bend = drift * (TAU * y as f64 / 200.0).sin();
                 wave(&lattice, x as f64 + bend, y as f64) + noise * rng.normal() + light * x as f64
             });
-            steadiness(&picture, &lattice, &averaged_cell(&picture, &lattice))
+            even_steadiness(&detrended(&picture), &lattice, &averaged_cell(&picture, &lattice))
         };
         for (noise, light) in [(0.0, 0.0), (1.5, 0.0), (0.3, 0.02)] {
             assert!(seen(noise, light, 0.0) > 0.9);

@@ -16,6 +16,7 @@
 //! many. Source: ours.
 
 use crate::fft2::{Fft2, angular_frequency};
+use crate::histogram::median;
 use asperity_surface::raster::Raster;
 use std::f64::consts::{LN_2, PI, TAU};
 
@@ -114,12 +115,6 @@ impl Waves {
             rings.iter().enumerate().filter(|(_, ring)| ring.1 > 0.0).map(|(i, ring)| (i, ring.0 / ring.1));
         means.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| (i as f64 + 0.5) * step)
     }
-}
-
-/// 0 of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ mod search;
 mod torus;
 mod wallpaper;
 
-pub use cell::{AveragedCell, Separation, averaged_cell, separate, steadiness, with_cell};
+pub use cell::{AveragedCell, Separation, averaged_cell, separate, with_cell};
 pub(crate) use cell::{averaged_even_cell, even_steadiness};
 pub(crate) use detrend::detrended;
 pub use document::{DocumentSearch, document_lattice};

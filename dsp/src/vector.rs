@@ -1,4 +1,4 @@
-//! Vectors of three components: the few operations that meshes need.
+//! Vectors of three components: the few operations that meshes and motions need.
 
 /// A point or direction, m.
 pub type Vec3 = [f64; 3];
@@ -30,7 +30,7 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
 /// |a|.
 #[must_use]
 pub fn length(a: Vec3) -> f64 {
-    dot(a, a).sqrt()
+    libm::sqrt(dot(a, a))
 }
 
 /// |a − b|.
@@ -49,7 +49,7 @@ pub fn unit(a: Vec3) -> Vec3 {
 /// The mean of some points.
 #[must_use]
 pub fn mean<const N: usize>(points: [Vec3; N]) -> Vec3 {
-    std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / N as f64)
+    core::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / N as f64)
 }
 
 /// The least and greatest corner of the box around some points; none for no point.
@@ -57,7 +57,7 @@ pub fn mean<const N: usize>(points: [Vec3; N]) -> Vec3 {
 pub fn bounds(points: &[Vec3]) -> Option<(Vec3, Vec3)> {
     let first = *points.first()?;
     Some(points.iter().fold((first, first), |(low, high), p| {
-        (std::array::from_fn(|c| low[c].min(p[c])), std::array::from_fn(|c| high[c].max(p[c])))
+        (core::array::from_fn(|c| low[c].min(p[c])), core::array::from_fn(|c| high[c].max(p[c])))
     }))
 }
 
