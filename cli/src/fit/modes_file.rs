@@ -94,7 +94,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// What is known of the recording and of what the modes leave of it.
+/// Figures of the recording and of what the modes leave of it.
 fn details(fit: &Fit) -> Value {
     json!({
         "sample_rate_hz": fit.sample_rate_hz,

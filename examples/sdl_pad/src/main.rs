@@ -28,7 +28,8 @@ fn play(pad: *mut SDL_Gamepad, wait: impl Fn()) -> Result<Vec<[u16; 2]>, Box<dyn
     for _ in 0..180 {
         renderer.render(&mut [&mut [0.0; BLOCK]], &mut [&mut [0.0; BLOCK]]);
         let [heavy, light] = port.newest().map(|level| (level.clamp(0.0, 1.0) * 65_535.0).round() as u16);
-        // SAFETY: the pad was opened and is not closed before this returns. 50 ms: what stalls stops by itself.
+        // SAFETY: the pad was opened and is not closed before this returns.
+        // 50 ms: what stalls stops by itself.
         if !unsafe { SDL_RumbleGamepad(pad, heavy, light, 50) } {
             return Err("the pad does not rumble, or is gone".into());
         }

@@ -71,7 +71,7 @@ impl std::fmt::Debug for PowerSpectra {
 }
 
 impl PowerSpectra {
-    /// Of pieces as long as the window, with zeros behind them up to `length`.
+    /// Spectra of pieces as long as the window, with zeros behind them up to `length`.
     #[must_use]
     pub fn new(window: Vec<f64>, length: usize) -> Self {
         Self { plan: FftPlanner::new().plan_fft_forward(length), window, length }

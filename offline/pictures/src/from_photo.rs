@@ -50,8 +50,8 @@ use asperity_dsp::DesignError;
 use asperity_surface::raster::Raster;
 use reduced::means;
 
-/// [`symmetry::even_steadiness`] below which the mean cell is not used. Source: ours; at least 0.95 for
-/// strict patterns of the tests and photographs, 0.08 for the skin among the photographs.
+/// [`symmetry::even_steadiness`] below which the mean cell is not used. Source: ours; at least 0.95
+/// for strict patterns of the tests and photographs, 0.08 for the skin among the photographs.
 const STEADY: f64 = 0.7;
 /// Largest micro-noise that is written, m: sandpaper.
 pub const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
