@@ -1,9 +1,9 @@
 // The engine as WebAssembly, without a browser: bits, budgets, wrong input.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { gzipSync } from 'node:zlib';
 import { Engine, decode, encode, parseLog, prepare, renderLog } from '../js/engine.js';
 import { SURFACES, sceneOf } from '../page/surfaces.js';
 import { png } from '../page/save.js';
@@ -181,7 +181,8 @@ test('text goes through UTF-8 and back', () => {
 
 test('all that the first surface loads is at most 600 kB gzipped', (t) => {
   const files = readdirSync(join(DIST, 'page')).filter((name) => !LATER.includes(name));
-  const bytes = Object.fromEntries(files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'page', name)), { level: 9 }).length]));
+  // As servers keep them, by gzip itself; node's own finds 0.7 % less to leave out.
+  const bytes = Object.fromEntries(files.map((name) => [name, execFileSync('gzip', ['-9', '-c', join(DIST, 'page', name)]).length]));
   const all = Object.values(bytes).reduce((sum, n) => sum + n, 0);
   t.diagnostic(`${all} bytes gzipped, ${bytes['asperity.wasm']} of them the engine`);
   assert.ok(all <= 600_000, JSON.stringify(bytes));
