@@ -26,7 +26,7 @@ pub fn reads<P: Into<PathBuf>>(paths: impl IntoIterator<Item = P>) {
 }
 
 /// Clears the list of files that are read: for a verb that reads what it wrote itself and writes it
-/// anew.
+/// anew, or writes back what it was asked to change.
 pub fn clear_reads() {
     READ.with_borrow_mut(Vec::clear);
 }

@@ -194,6 +194,7 @@ mod tests {
             pad_mass_kg: 0.03,
             contact_stiffness_n_m: 6.5e3,
             tip_radius_m: 1.6e-3,
+            tip: Some(tip),
             ..Probe::default()
         };
         let front = tool.heard(&tip);

@@ -3,6 +3,10 @@
 
 mod calls;
 mod clips;
+#[cfg(feature = "offline")]
+#[path = "../../../cli/src/columns.rs"]
+#[allow(dead_code)]
+mod columns;
 #[path = "../targets.rs"]
 mod engine;
 #[cfg(feature = "offline")]
@@ -24,6 +28,10 @@ mod import;
 #[path = "../../../cli/src/output.rs"]
 #[allow(dead_code)]
 mod output;
+#[cfg(feature = "offline")]
+#[path = "../../../cli/src/paths.rs"]
+#[allow(dead_code)]
+mod paths;
 #[cfg(feature = "offline")]
 mod program;
 #[cfg(feature = "offline")]

@@ -39,7 +39,7 @@ fn scene_of_gltf(data: &[u8]) {
             // A mesh's modes take seconds, where the linear algebra is not optimised half a minute;
             // meshes have doors of their own.
             surfaces_only: true,
-            unwrap: UnwrapOptions::default(),
+            unwrap: UnwrapOptions { unwrap: None, phi: 0.2 },
             json: false,
         };
         match import::run(&options) {

@@ -207,6 +207,8 @@ impl Tuned<'_> {
             return Err(CliError::file(&self.path, "was written by somebody else meanwhile", right));
         }
         let text = self.document.text();
+        // The scene is read, and written back on purpose.
+        output::clear_reads();
         let mut outputs = output::Outputs::new();
         outputs.write(&self.path, text.as_bytes())?;
         outputs.commit()?;
