@@ -1,5 +1,6 @@
-//! What arrives live at a headset, a pad of four channels and a pad of two motors, against the
-//! causal reduction of the same signal offline: scenes and recordings that nothing was tuned on.
+//! Signals that arrive live at a headset, a pad of four channels and a pad of two motors, against
+//! the causal reduction of the same signal offline: scenes and recordings of which none was tuned
+//! on.
 
 use crate::reduction::wav;
 use asperity::live::channel_map::{ChannelMap, Interleaver};
@@ -174,7 +175,8 @@ fn same_points(name: &str, frames: &[(f64, HeadsetFrame)], reduced: &Clip) {
     }
 }
 
-/// What arrives at the three devices, live; errors of third octaves, largest of motor levels, dB.
+/// Errors of what arrives live at the three devices: of third octaves, and the largest of motor
+/// levels, dB.
 fn arrives(name: &str, seconds: f64, build: &Build<'_>) -> [f64; 2] {
     let device = Device::quest();
     let [haptic, audio] = offline(seconds, build);

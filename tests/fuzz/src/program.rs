@@ -6,6 +6,7 @@ use crate::fit::import::{self as table, Missing};
 use crate::import;
 use crate::unwrap::UnwrapOptions;
 use asperity::files::scene_file::SceneFile;
+use asperity_shape::unwrap::PHI;
 use document::Document;
 use std::path::Path;
 
@@ -39,7 +40,7 @@ fn scene_of_gltf(data: &[u8]) {
             // A mesh's modes take seconds, where the linear algebra is not optimised half a minute;
             // meshes have doors of their own.
             surfaces_only: true,
-            unwrap: UnwrapOptions { unwrap: None, phi: 0.2 },
+            unwrap: UnwrapOptions { unwrap: None, phi: PHI },
             json: false,
         };
         match import::run(&options) {
