@@ -7,7 +7,7 @@ use crate::random_ends;
 use random_ends::{Outcome, outcome};
 
 #[test]
-fn scenes_at_the_ends_of_what_is_accepted_are_finite_and_hit_no_harder_than_physics_explains() {
+fn scenes_at_the_ends_of_the_ranges_stay_finite() {
     let (mut fingertips, mut others) = (0, 0);
     for seed in 1..=300 {
         match outcome(seed) {

@@ -107,7 +107,7 @@ fn bodies_surfaces_contacts_and_ids_go_on_at_the_same_second() {
 }
 
 #[test]
-fn probes_gains_buses_and_sand_are_kept_and_events_that_wait_come_at_their_second() {
+fn probes_gains_and_sand_are_kept_and_waiting_events_come() {
     let config = Config { audio: vec![asperity::AudioBus::default(); 2], ..Config::default() };
     let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     let mode = Mode { frequency_hz: MODE_HZ, decay_per_s: 10.0, amplitude: 0.3, phase_rad: 0.0 };
@@ -168,7 +168,7 @@ fn a_rate_that_no_engine_has_leaves_everything_as_it_was() {
 }
 
 #[test]
-fn a_null_sink_gives_its_renderer_back_and_another_one_goes_on_with_it() {
+fn a_null_sink_returns_its_renderer_and_another_continues_with_it() {
     let (mut scene, renderer, bell, _) = game(44_100.0);
     let map = || ChannelMap::stereo_then_haptics(1);
     let sink = NullSink::start(Interleaver::new(renderer, map()), 256).unwrap();

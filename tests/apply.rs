@@ -120,7 +120,7 @@ fn what_can_change_while_it_sounds_changes_without_a_step() {
 }
 
 #[test]
-fn a_gain_of_a_bus_is_reached_and_the_rest_is_as_it_was() {
+fn a_bus_gain_is_reached_and_the_rest_is_unchanged() {
     let [still, softer] =
         [None, Some(SCENE.replace("gain = 0.5", "gain = 0.05"))].map(|after| run(after.as_deref()));
     assert_eq!(still[0], softer[0], "what is felt");

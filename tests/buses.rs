@@ -57,7 +57,7 @@ fn render(renderer: &mut Renderer, buses: usize, frames: usize, block: usize) ->
 }
 
 #[test]
-fn of_two_bodies_on_two_buses_the_one_that_is_not_struck_leaves_its_bus_at_exactly_zero() {
+fn an_unstruck_body_leaves_its_bus_at_exactly_zero() {
     let (mut scene, mut renderer) = engine(2);
     let struck = scene.add_body(Body::new(bar()).material(Material::CERAMIC)).unwrap();
     scene.add_body(Body::new(bar()).material(Material::GLASS).bus(BusId(1))).unwrap();
@@ -96,7 +96,7 @@ fn without_limiters_the_buses_add_up_to_what_a_single_one_carries() {
 }
 
 #[test]
-fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives_the_same_bits() {
+fn a_sounding_body_changes_its_bus_without_a_step_in_any_split() {
     let game = |moves: bool, block: usize| {
         let (mut scene, mut renderer) = engine(2);
         let body = scene.add_body(bar()).unwrap();
@@ -126,7 +126,7 @@ fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives
 }
 
 #[test]
-fn a_bus_that_is_not_there_is_refused_with_the_number_there_are() {
+fn a_missing_bus_is_refused_with_the_number_of_buses() {
     let (mut scene, _renderer) = engine(2);
     let refused = scene.add_body(Body::new(bar()).bus(BusId(2))).unwrap_err();
     assert_eq!(refused, AddError::UnknownBus { bus: 2, buses: 2 });
@@ -136,7 +136,7 @@ fn a_bus_that_is_not_there_is_refused_with_the_number_there_are() {
 }
 
 #[test]
-fn every_call_refuses_the_id_of_what_has_gone_although_its_place_is_used_again() {
+fn every_call_refuses_the_id_of_a_removed_thing() {
     let (mut scene, mut renderer) = engine(1);
     let old_body = scene.add_body(bar()).unwrap();
     let old_surface = scene.add_surface(plate(0.5).body(old_body)).unwrap();
@@ -169,7 +169,7 @@ fn every_call_refuses_the_id_of_what_has_gone_although_its_place_is_used_again()
 }
 
 #[test]
-fn strokes_on_the_surface_of_a_body_that_has_gone_do_not_ring_the_one_that_took_its_place() {
+fn strokes_on_a_removed_bodys_surface_ring_no_other() {
     let (mut scene, mut renderer) = engine(1);
     let gone = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(plate(0.9).body(gone)).unwrap();
@@ -190,7 +190,7 @@ fn strokes_on_the_surface_of_a_body_that_has_gone_do_not_ring_the_one_that_took_
 }
 
 #[test]
-fn a_body_is_heard_by_four_listeners_each_at_a_gain_of_its_own() {
+fn a_body_sounds_on_four_buses_at_a_gain_each() {
     let gains = [1.0, 0.5, 0.25, 2.0];
     let mut heard = Vec::new();
     for sends in [false, true] {
@@ -213,7 +213,7 @@ fn a_body_is_heard_by_four_listeners_each_at_a_gain_of_its_own() {
 }
 
 #[test]
-fn a_listener_that_comes_and_goes_makes_no_step_and_any_split_gives_the_same_bits() {
+fn a_listener_comes_and_goes_without_a_step_in_any_split() {
     let game = |sends: bool, block: usize| {
         let (mut scene, mut renderer) = engine(2);
         let body = scene.add_body(bar()).unwrap();
@@ -236,7 +236,7 @@ fn a_listener_that_comes_and_goes_makes_no_step_and_any_split_gives_the_same_bit
 }
 
 #[test]
-fn a_body_has_four_further_listeners_and_its_own_bus_is_none_of_them() {
+fn a_body_has_four_further_listeners_besides_its_own_bus() {
     let (mut scene, _renderer) = engine(7);
     let body = scene.add_body(bar()).unwrap();
     assert!(scene.set_body_send(body, BusId(0), 0.5).unwrap_err().to_string().contains("further bus"));
@@ -270,7 +270,7 @@ fn peaks_of(sends: &str) -> Vec<f64> {
 }
 
 #[test]
-fn a_scene_file_sends_a_body_to_several_buses_each_at_its_gain() {
+fn a_scene_file_sends_a_body_to_several_buses() {
     let whole = peaks_of("bus = \"left\"");
     assert!(whole[0] > 0.0 && whole[1..] == [0.0, 0.0]);
     let sent = peaks_of("sends = { left = 0.2, right = 0.5, room = 0 }");

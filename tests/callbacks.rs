@@ -80,7 +80,7 @@ fn alone(speed_m_s: f64) -> Vec<f32> {
 }
 
 #[test]
-fn a_collision_told_four_times_in_a_tick_sounds_once_where_the_body_has_a_least_time() {
+fn a_collision_reported_four_times_sounds_once_within_the_least_time() {
     // Once for each collider and each side: both of a pair tell the other.
     for (least_time_s, wanted_db, too_soon) in [(0.0, 12.0, 0), (0.03, 0.0, 3)] {
         let mut game = Game::live();
@@ -97,7 +97,7 @@ fn a_collision_told_four_times_in_a_tick_sounds_once_where_the_body_has_a_least_
 }
 
 #[test]
-fn events_that_nobody_clears_sound_once_where_the_body_has_a_least_time() {
+fn uncleared_events_sound_once_within_the_least_time() {
     // A queue of events that is read but not emptied tells a strike again in each of three ticks.
     let mut game = Game::live();
     let body = game.scene.add_body(block().least_time_s(0.1)).unwrap();
@@ -111,7 +111,7 @@ fn events_that_nobody_clears_sound_once_where_the_body_has_a_least_time() {
 }
 
 #[test]
-fn a_weak_blow_does_not_cut_off_a_strong_one_and_ten_a_second_ring_into_each_other() {
+fn a_weak_blow_never_cuts_a_strong_one_off() {
     let mut game = Game::live();
     let both = game.run(30, |game, tick| match tick {
         0 => game.strike_block(1.0),
@@ -125,7 +125,7 @@ fn a_weak_blow_does_not_cut_off_a_strong_one_and_ten_a_second_ring_into_each_oth
 }
 
 #[test]
-fn a_blow_twice_as_fast_is_six_decibels_louder_and_one_of_nothing_is_silent() {
+fn a_blow_twice_as_fast_is_six_decibels_louder() {
     let louder = db(peak(&alone(0.2)) / peak(&alone(0.1)));
     assert!((5.0..9.0).contains(&louder), "{louder} dB");
     assert_eq!(peak(&alone(0.0)), 0.0);
@@ -156,7 +156,7 @@ fn no_mass_and_infinite_mass_are_refused_in_words() {
 }
 
 #[test]
-fn a_slide_told_by_both_sides_is_as_loud_as_two_and_one_told_under_one_name_as_one() {
+fn a_slide_reported_by_both_sides_is_loud_as_two() {
     let level = |ids: [u64; 2]| {
         let mut game = Game::live();
         let (heard, felt) = game.run(90, |game, tick| {
@@ -173,7 +173,7 @@ fn a_slide_told_by_both_sides_is_as_loud_as_two_and_one_told_under_one_name_as_o
 }
 
 #[test]
-fn an_end_that_is_told_in_every_frame_harms_nothing_and_a_begin_that_never_came_is_told() {
+fn an_end_in_every_frame_is_harmless_and_a_lost_begin_reported() {
     let mut game = Game::live();
     game.run(60, |game, tick| {
         if tick < 10 {
@@ -225,7 +225,7 @@ fn haptics_after_ten_minutes_are_those_of_the_first() {
 }
 
 #[test]
-fn a_pool_whose_bodies_come_and_go_a_thousand_times_plays_each_and_keeps_no_place() {
+fn a_thousand_bodies_through_a_pool_play_and_keep_no_place() {
     let mut game = Game::live();
     let (heard, _) = game.run(1000, |game, _| {
         let body = game.scene.add_body(block()).unwrap();
@@ -237,7 +237,7 @@ fn a_pool_whose_bodies_come_and_go_a_thousand_times_plays_each_and_keeps_no_plac
 }
 
 #[test]
-fn places_that_change_at_30_hz_and_are_told_at_120_are_felt_as_a_stroke() {
+fn places_at_30_hz_reported_at_120_are_felt_as_strokes() {
     // A network interpolates; the collider behind it moves in steps.
     let felt = |stair: bool| {
         let mut game = Game::live();
@@ -262,7 +262,7 @@ fn places_that_change_at_30_hz_and_are_told_at_120_are_felt_as_a_stroke() {
 }
 
 #[test]
-fn a_hand_that_freezes_for_two_seconds_and_is_elsewhere_then_is_no_blow() {
+fn a_hand_frozen_for_two_seconds_and_moved_is_no_blow() {
     let mut game = Game::live();
     let (_, usual) = game.run(60, |game, tick| game.stroke(1, 0.1, tick == 0));
     // Updates stay away; the game stands at the last place and tells it.
@@ -290,7 +290,7 @@ fn a_thing_that_is_put_back_at_its_start_stops_sounding_there() {
 }
 
 #[test]
-fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
+fn a_pinched_thing_buzzes_no_louder_than_its_blows() {
     let mut game = Game::live();
     let (heard, _) = game.run(120, |game, _| {
         game.strike_block(0.3);
@@ -306,7 +306,7 @@ fn a_thing_pinched_between_paddle_and_table_buzzes_no_louder_than_its_blows() {
 }
 
 #[test]
-fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_a_table_is_muted() {
+fn a_missing_controller_is_refused_and_a_resting_one_is_muted() {
     let mut game = Game::live();
     let begin = ContactEvent::begin(ContactId(1), game.surface, ChannelId(1), along(0.0, 0.1));
     let error = game.scene.report(0.0, begin).unwrap_err().to_string();
@@ -317,7 +317,7 @@ fn a_controller_that_is_not_there_is_refused_by_its_number_and_one_that_lies_on_
 }
 
 #[test]
-fn an_entity_whose_impacts_are_turned_off_is_silent_and_its_neighbour_is_not() {
+fn an_entity_with_impacts_off_is_silent_beside_its_neighbour() {
     let mut game = Game::live();
     let quiet = game.scene.add_body(block()).unwrap();
     game.scene.set_body_gain(quiet, 0.0).unwrap();
@@ -336,7 +336,7 @@ fn an_entity_whose_impacts_are_turned_off_is_silent_and_its_neighbour_is_not() {
 }
 
 #[test]
-fn a_thing_three_hundred_times_as_large_is_added_and_heard_or_refused_in_words() {
+fn a_huge_thing_is_added_and_heard_or_refused() {
     for size in [300.0, 0.02] {
         let mut game = Game::live();
         match Body::stock(Stock::Block, Material::WOOD, 0.1 * size) {
@@ -394,7 +394,7 @@ fn a_hundred_things_that_land_in_one_tick_are_each_struck() {
 }
 
 #[test]
-fn a_begin_that_is_told_again_without_an_end_goes_on_as_one_contact() {
+fn a_begin_repeated_without_an_end_continues_one_contact() {
     let level = |again_every: u32| {
         let mut game = Game::live();
         let (heard, felt) = game.run(120, |game, tick| game.stroke(1, 0.1, tick % again_every == 0));

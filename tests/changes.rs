@@ -66,7 +66,7 @@ fn every_parameter_of_solid_noise() {
 }
 
 #[test]
-fn scale_crossfade_band_split_and_a_part_of_a_sum_within_a_mask() {
+fn scale_crossfade_band_split_and_a_masked_sum() {
     let scale = Scale::new(solid(SolidMaterial::Gravel), 1.0).unwrap();
     changed("scale", surface(scale), &[0.0, 3.0, -1.0, 0.2].map(ScaleTo));
     let fade = Crossfade::new(solid(SolidMaterial::Pebbles), solid(SolidMaterial::Gravel));

@@ -83,7 +83,7 @@ fn thirty_two_clips_beside_a_stroke_are_their_sum() {
 }
 
 #[test]
-fn strokes_are_ducked_while_a_clip_plays_and_come_back_without_a_click() {
+fn strokes_are_ducked_under_a_clip_without_a_click() {
     let (mut scene, mut renderer, surface) = engine(1);
     stroke(&mut scene, surface);
     let alone = on(&mut renderer, 12_000, 64);
@@ -107,7 +107,7 @@ fn strokes_are_ducked_while_a_clip_plays_and_come_back_without_a_click() {
 }
 
 #[test]
-fn a_clip_of_another_rate_is_the_same_wave_and_begins_and_ends_without_a_click() {
+fn a_clip_of_another_rate_is_the_same_wave_without_clicks() {
     for rate_hz in [2000.0, 8000.0, 44_100.0, 96_000.0] {
         let (mut scene, mut renderer, _) = engine(1);
         // A cosine: it begins at its peak.
@@ -128,7 +128,7 @@ fn a_clip_of_another_rate_is_the_same_wave_and_begins_and_ends_without_a_click()
 }
 
 #[test]
-fn however_blocks_are_cut_clips_have_the_same_bits_and_without_one_nothing_changes() {
+fn clips_have_the_same_bits_in_any_blocks() {
     let render = |block: usize, plays: bool| {
         let (mut scene, mut renderer, surface) = engine(2);
         stroke(&mut scene, surface);

@@ -47,7 +47,7 @@ fn without_a_high_pass_it_is_the_contact_force_itself() {
 }
 
 #[test]
-fn on_smooth_ground_it_is_what_presses_and_high_passed_it_is_silent() {
+fn on_smooth_ground_it_is_the_pressing_force() {
     let smooth = || plate(0.5).micro_relief_m(0.0);
     let (steady, _) = felt(config(0.0, "fingertip"), smooth(), 0.8, 256);
     assert!((f64::from(steady[20_000]) - 0.8).abs() < 1e-6, "{}", steady[20_000]);
@@ -65,7 +65,7 @@ fn any_split_into_blocks_presses_with_the_same_bits() {
 }
 
 #[test]
-fn a_blow_in_the_hand_is_felt_as_its_own_pulse_of_force() {
+fn a_blow_in_the_hand_is_felt_as_its_force_pulse() {
     let Engine { mut scene, mut renderer, .. } = config(0.0, "rigid").build().unwrap();
     let body = scene.add_body(Body::stock(Stock::Plate, Material::WOOD, 0.3).unwrap()).unwrap();
     let impact = Impact { speed_m_s: 0.5, mass_kg: 0.02, restitution: 0.5, ..Impact::on(body) };

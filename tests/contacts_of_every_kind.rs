@@ -62,7 +62,7 @@ fn preset(name: &str) -> Probe {
 }
 
 #[test]
-fn each_of_several_probes_in_one_scene_feels_what_it_feels_alone_to_the_bit() {
+fn each_probe_of_a_scene_feels_what_it_feels_alone() {
     let names = ["fingertip", "stylus", "rigid"];
     let alone = names.map(|name| {
         let (mut scene, mut renderer) = build(Config { probe: preset(name), ..config() });
@@ -141,7 +141,7 @@ fn amplitude(x: &[f64], frequency_hz: f64) -> f64 {
 const WINDOW: u32 = 44_100;
 
 #[test]
-fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
+fn pads_of_three_probes_move_on_a_plate_as_closed_forms() {
     for name in ["fingertip", "stylus", "rigid"] {
         let probe = preset(name);
         for frequency_hz in [20.0, 40.0, 80.0, 160.0, 315.0, 630.0, 1000.0] {
@@ -195,7 +195,7 @@ fn pen_and_plate(scene: &mut Scene) -> [BodyId; 2] {
 }
 
 #[test]
-fn a_held_pen_rings_from_the_stroke_with_the_impulses_of_the_plate_and_the_opposite_sign() {
+fn a_held_pen_rings_by_the_plates_impulses_with_opposite_sign() {
     let (mut scene, mut renderer) = build(config());
     let [wood, pen] = pen_and_plate(&mut scene);
     let surface = scene.add_surface(plate(0.9).body(wood)).unwrap();
@@ -206,7 +206,7 @@ fn a_held_pen_rings_from_the_stroke_with_the_impulses_of_the_plate_and_the_oppos
 }
 
 #[test]
-fn a_held_pen_rings_from_its_own_strike_and_the_strike_is_felt_as_its_mobility_says() {
+fn a_held_pen_rings_from_its_strike_as_its_mobility_says() {
     for name in ["fingertip", "stylus", "rigid"] {
         let (mut scene, mut renderer) = build(config());
         let [wood, pen] = pen_and_plate(&mut scene);
@@ -251,7 +251,7 @@ fn pulse_spectrum(frequency_hz: f64, blow: &Impact) -> f64 {
 }
 
 #[test]
-fn a_strike_that_names_a_channel_is_felt_there_and_one_that_names_nobody_is_only_heard() {
+fn a_strike_is_felt_only_on_the_channel_it_names() {
     let felt = |actuator: Option<ChannelId>| {
         let (mut scene, mut renderer) = build(config());
         let [wood, _] = pen_and_plate(&mut scene);
@@ -263,7 +263,7 @@ fn a_strike_that_names_a_channel_is_felt_there_and_one_that_names_nobody_is_only
 }
 
 #[test]
-fn blows_and_held_strokes_have_the_same_bits_in_blocks_of_any_size() {
+fn blows_and_held_strokes_have_the_same_bits_in_blocks() {
     let game = |block: usize| {
         let (mut scene, mut renderer) = build(config());
         let [wood, pen] = pen_and_plate(&mut scene);
@@ -285,7 +285,7 @@ fn blows_and_held_strokes_have_the_same_bits_in_blocks_of_any_size() {
 }
 
 #[test]
-fn a_contact_without_a_channel_is_heard_as_it_was_and_felt_by_nobody() {
+fn a_contact_without_a_channel_is_heard_and_not_felt() {
     let game = |actuator: Option<ChannelId>, gain: f64| {
         let (mut scene, mut renderer) = build(config());
         let [wood, _] = pen_and_plate(&mut scene);
@@ -304,7 +304,7 @@ fn a_contact_without_a_channel_is_heard_as_it_was_and_felt_by_nobody() {
 }
 
 #[test]
-fn a_probe_a_holder_or_a_channel_that_is_not_there_is_refused() {
+fn a_missing_probe_holder_or_channel_is_refused() {
     let (mut scene, _renderer) = build(config());
     let [wood, pen] = pen_and_plate(&mut scene);
     let surface = scene.add_surface(plate(0.5).body(wood)).unwrap();

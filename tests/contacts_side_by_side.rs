@@ -139,7 +139,7 @@ fn render(game: &Game, setting: &Setting, seed: u64, plays: impl Fn(usize) -> bo
 }
 
 #[test]
-fn every_contact_of_a_random_game_renders_the_bits_it_has_alone_in_any_blocks_and_on_any_number_of_threads() {
+fn a_random_games_contacts_have_the_bits_they_have_alone() {
     let mut rng = Rng::new(31);
     let names = [None, Some("fingertip"), Some("stylus"), Some("rigid")];
     let outputs = [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential];

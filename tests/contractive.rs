@@ -43,7 +43,7 @@ fn solid(material: SolidMaterial) -> Surface {
 }
 
 #[test]
-fn a_path_moved_by_a_picometre_gives_the_same_render_with_the_shipped_defaults() {
+fn a_path_moved_by_a_picometre_renders_the_same_by_default() {
     let polished = || plate(0.1);
     let matte = || plate(0.9);
     let coarse = || grating(7e-3, 2e-4);
@@ -72,7 +72,7 @@ fn a_path_moved_by_a_picometre_gives_the_same_render_with_the_shipped_defaults()
 const LEAP: [&str; 1] = ["sole"];
 
 #[test]
-fn a_stock_probe_forgets_on_flat_ceramic_or_leaps_and_keeps_its_third_octaves() {
+fn stock_probes_recover_on_ceramic_and_keep_their_third_octaves() {
     for (probe, _) in PROBE_PRESETS {
         for (roughness, force_n) in [(0.2, 1.0), (0.5, 1.0), (0.9, 1.0), (0.5, 20.0)] {
             let [one, other] = pair(probe, &|| plate(roughness), 0.1, force_n);

@@ -246,7 +246,7 @@ fn slips() -> [Slip; 14] {
 }
 
 #[test]
-fn a_log_that_contradicts_itself_is_told_with_the_unit_that_was_meant() {
+fn a_contradicting_log_is_reported_with_the_likely_unit() {
     let mut rng = Rng::new(54);
     let (mut tried, mut right) = (0, 0);
     let mut missed = Vec::new();
@@ -359,7 +359,7 @@ fn a_right_log_is_not_called_a_contradiction() {
 }
 
 #[test]
-fn a_time_that_stands_a_force_in_millinewtons_and_a_blow_at_every_step_are_told() {
+fn standing_times_wrong_units_and_constant_blows_are_reported() {
     let mut rng = Rng::new(60);
     for kind in MOTIONS {
         for _ in 0..8 {
@@ -398,7 +398,7 @@ fn a_time_that_stands_a_force_in_millinewtons_and_a_blow_at_every_step_are_told(
 }
 
 #[test]
-fn a_heavy_thing_with_a_probe_of_its_own_presses_as_hard_as_it_likes() {
+fn a_heavy_thing_with_its_own_probe_presses_without_bound() {
     let Engine { mut scene, .. } = Config::default().build().unwrap();
     let surface = scene.add_surface(Surface::flat(4.0, 4.0).unwrap()).unwrap();
     for (number, name) in ["rigid", "sole"].into_iter().enumerate() {
@@ -512,7 +512,7 @@ fn hopping(side_m: f64, every: usize, tells_velocity: bool, seed: u64) -> Vec<Co
 }
 
 #[test]
-fn a_box_whose_point_hops_among_its_corners_without_a_velocity_is_told() {
+fn a_point_hopping_among_corners_without_velocity_is_reported() {
     let mut missed = Vec::new();
     for side_m in [0.05, 0.1, 0.3, 1.0] {
         for every in [1, 2, 3, 5, 10] {

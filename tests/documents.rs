@@ -244,3 +244,25 @@ fn what_renders_takes_its_functions_from_libm() {
     }
     assert!(found.is_empty(), "write libm::…, whose digits are the same everywhere: {found:#?}");
 }
+
+/// Names of tests are sentences that fit into the runner's line.
+const MOST_WORDS: usize = 12;
+
+#[test]
+fn names_of_tests_have_twelve_words_at_most() {
+    let mut long = Vec::new();
+    for path in sources() {
+        let text = fs::read_to_string(&path).unwrap();
+        let mut is_test = false;
+        for line in text.lines().map(str::trim_start) {
+            is_test |= line.starts_with("#[test]");
+            let Some((_, after)) = line.split_once("fn ").filter(|_| is_test) else { continue };
+            is_test = false;
+            let name = after.split('(').next().unwrap_or(after);
+            if name.split('_').count() > MOST_WORDS {
+                long.push(format!("{}: {name}", path.display()));
+            }
+        }
+    }
+    assert!(long.is_empty(), "names of more than {MOST_WORDS} words: {long:#?}");
+}

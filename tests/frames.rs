@@ -82,7 +82,7 @@ fn at(surface: &str, uv: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn faces_of_a_cube_cut_from_one_block_are_continuous_over_their_edges() {
+fn faces_of_a_cube_from_one_block_meet_continuously() {
     let mut worst = 0.0f64;
     let mut differ = 0.0f64;
     for k in 0..8 {
@@ -103,7 +103,7 @@ fn faces_of_a_cube_cut_from_one_block_are_continuous_over_their_edges() {
 }
 
 #[test]
-fn a_frame_along_the_body_s_axes_is_the_surface_without_a_frame_but_for_its_tiling() {
+fn a_frame_on_the_bodys_axes_differs_only_in_tiling() {
     for uv in [[0.3, 0.4], [0.6, 0.5]] {
         let (framed, plain) = (at("top", uv), at("plain", uv));
         // The tile without a seam blends only near its edges.

@@ -59,7 +59,7 @@ fn bad_numbers_are_handed_back_with_the_name_of_their_field() {
 }
 
 #[test]
-fn a_lorry_and_a_bullet_count_as_the_limit_and_why_silent_asks_about_the_unit() {
+fn a_lorry_and_a_bullet_are_limited_and_their_unit_questioned() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
     let contact = ContactId(1);
     let lorry = ContactSample { normal_force_n: 1e300, ..sample(0.1) };
@@ -89,7 +89,7 @@ fn a_thousand_contacts_leave_sixty_four_sounding() {
 }
 
 #[test]
-fn a_flood_of_a_million_events_a_second_is_bounded_and_every_event_is_accounted_for() {
+fn a_flood_of_events_is_bounded_and_every_event_is_counted() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
     let contacts = 10u64;
     for contact in 0..contacts {
@@ -147,7 +147,7 @@ fn a_full_queue_hands_the_event_back() {
 }
 
 #[test]
-fn a_contact_whose_end_was_lost_fades_and_comes_back_with_its_next_move() {
+fn a_contact_whose_end_was_lost_fades_and_returns_on_move() {
     let (mut scene, mut renderer, surface) = engine(Config::default());
     scene.report(0.0, ContactEvent::begin(ContactId(1), surface, ChannelId(0), sample(0.1))).unwrap();
     run(&mut renderer, 8_000);

@@ -35,7 +35,7 @@ fn error_db(found: &[f32], exact: &[f32]) -> f64 {
 }
 
 #[test]
-fn a_pinned_kernel_is_the_one_that_runs_and_gives_the_bits_of_its_family() {
+fn a_pinned_kernel_runs_and_gives_its_familys_bits() {
     let portable = render(Some(Isa::Portable), 128);
     let fused: Vec<_> = Isa::ALL
         .into_iter()

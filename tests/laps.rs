@@ -138,7 +138,7 @@ fn corner(x: &[f32]) -> f64 {
 }
 
 #[test]
-fn the_same_place_has_the_same_height_lap_after_lap_on_every_source() {
+fn the_same_place_has_the_same_height_lap_after_lap() {
     for (name, make) in sources() {
         let (rows, haptic) = felt(make(), &laps(1.0, |u| u - u.floor()));
         let worst = (10_000..10_000 + LAP)
@@ -184,7 +184,7 @@ fn a_mirrored_map_wraps_at_every_second_tile() {
 }
 
 #[test]
-fn at_the_edge_of_a_clamped_map_and_of_sand_a_jump_is_a_jump_and_no_blow() {
+fn a_jump_at_a_clamped_edge_and_on_sand_is_no_blow() {
     let clamped = || surface(map(Wrap::Clamp)).micro_relief_m(0.0);
     let sand = || {
         surface(
@@ -218,7 +218,7 @@ fn ridge_far_away(texels: usize) -> Surface {
 }
 
 #[test]
-fn a_flat_place_is_as_rough_as_a_constant_map_at_every_resolution() {
+fn a_flat_place_is_as_rough_as_a_constant_map() {
     for (texels, speed_m_s) in [(256, 0.1), (512, 0.2), (1024, 0.1), (2048, 0.1), (4096, 0.2)] {
         let level = |texels: usize| {
             let (_, haptic) = felt(ridge_far_away(texels), &laps_at(speed_m_s, 2.0, |u| u));

@@ -133,7 +133,7 @@ fn fifty_strikes_a_second_never_clip() {
 
 /// What was open: seventy decibels taken off a strike, and no word of it.
 #[test]
-fn a_limiter_that_takes_much_off_is_told_with_the_keys_that_mend_it() {
+fn a_hard_working_limiter_is_reported_with_the_keys_that_help() {
     let struck = |audio: &str, key: &str| {
         let plate = "name = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"glass\"";
         let toml = format!("[[body]]\n{plate}\n{key}\n[[actuator]]\nfull_scale = 1e-4\n[audio]\n{audio}\n");
@@ -171,7 +171,7 @@ fn a_limiter_that_takes_much_off_is_told_with_the_keys_that_mend_it() {
 }
 
 #[test]
-fn strikes_keep_their_balance_from_body_to_body_and_a_word_makes_them_as_loud_as_mechanics_says() {
+fn strikes_keep_their_balance_unless_mechanical_loudness_is_asked() {
     let body = |name: &str, material: &str, key: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"{material}\"\n{key}\n\
@@ -210,7 +210,7 @@ fn strikes_keep_their_balance_from_body_to_body_and_a_word_makes_them_as_loud_as
 }
 
 #[test]
-fn a_body_that_is_added_later_is_struck_as_loudly_as_those_of_the_scene_file() {
+fn a_body_added_later_is_as_loud_as_the_scene_files() {
     let body = |name: &str, key: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"glass\"\n{key}\n"
@@ -239,7 +239,7 @@ fn a_body_that_is_added_later_is_struck_as_loudly_as_those_of_the_scene_file() {
 }
 
 #[test]
-fn bodies_in_pascals_sound_as_loud_as_they_say_and_leave_their_neighbours_alone() {
+fn bodies_in_pascals_have_their_level_and_leave_neighbours_alone() {
     let modes = |unit: &str| {
         format!(
             "{{\"format\":\"asperity.modes\",\"version\":1,\"impulse_n_s\":0.01,{unit}\"modes\":[\
@@ -277,7 +277,7 @@ fn bodies_in_pascals_sound_as_loud_as_they_say_and_leave_their_neighbours_alone(
 }
 
 #[test]
-fn buses_without_a_gain_share_one_and_a_bus_of_bodies_in_pascals_keeps_one() {
+fn buses_without_a_gain_share_one_except_those_in_pascals() {
     let gains = |audio: &str, surfaces: &str| {
         let toml = format!(
             "[[body]]\nname = \"plate\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"ceramic\"\nbus = \"left\"\n\

@@ -165,7 +165,7 @@ fn game_time_may_be_anywhere() {
 }
 
 #[test]
-fn a_level_restart_at_0_and_a_stamp_that_is_off_deafen_nobody() {
+fn a_level_restart_at_0_and_a_wrong_stamp_mute_nobody() {
     let stats = play("restart at 0", &stamped(|t| if t < 3.0 { 100.0 + t } else { t - 3.0 }));
     assert_eq!(stats.clock_jumps, 1);
     for off_s in [1e6, -1e6, 30.0] {

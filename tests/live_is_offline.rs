@@ -30,7 +30,7 @@ fn two_fingers() -> ContactLog {
 }
 
 #[test]
-fn a_recorded_live_run_and_its_offline_render_agree_to_the_last_bit() {
+fn a_recorded_live_run_matches_its_offline_render_to_the_bit() {
     let log = two_fingers();
     let block_frames = 128;
     let (mut scene, mut renderer, names) = scene_of(Config { clock: ClockMode::LIVE, ..Config::default() });

@@ -139,7 +139,7 @@ fn limited_db(mut any: impl FnMut() -> f64) -> f64 {
 }
 
 #[test]
-fn sixty_engines_without_a_gain_stay_within_full_scale_at_twice_the_reference_speed() {
+fn sixty_engines_without_a_gain_stay_within_full_scale() {
     let limited: Vec<f64> =
         (1..=60).map(|case| limited_db(numbers(0x9E37_79B9_7F4A_7C15 ^ (case << 40)))).collect();
     let within = limited.iter().filter(|by_db| **by_db <= 6.0).count();
@@ -151,7 +151,7 @@ fn sixty_engines_without_a_gain_stay_within_full_scale_at_twice_the_reference_sp
 }
 
 #[test]
-fn a_fingers_stroke_on_levels_of_its_own_is_within_a_decibel_of_the_scene_files() {
+fn a_finger_with_its_own_level_is_within_a_decibel_of_scenes() {
     let mut worst = [0.0f64; 2];
     for (index, preset) in Material::PRESETS.iter().enumerate() {
         let relief_m = [1e-6, 2e-5, 3e-4][index % 3];
@@ -436,7 +436,7 @@ fn what_falls_hard_is_louder_than_a_tap() {
 }
 
 #[test]
-fn what_is_thrown_at_a_cushion_or_a_bowl_stays_within_nine_decibels_of_full_scale() {
+fn cushions_and_bowls_stay_within_nine_decibels_of_full_scale() {
     for (name, kind) in Stock::ALL {
         for of in ["steel", "wood", "denim"] {
             let mut played = Played::new(live(LevelPolicy::Shared));

@@ -84,7 +84,7 @@ fn solid() -> Surface {
 }
 
 #[test]
-fn twenty_and_sixty_four_fingers_on_sand_a_brownian_path_and_a_solid_all_feel_it() {
+fn sixty_four_fingers_on_sand_path_and_solid_feel_it() {
     for fingers in [20, 64] {
         let surfaces = [
             ("sand", sand()),
@@ -110,7 +110,7 @@ fn fingers_on_a_brownian_path_each_go_their_own_way_along_it() {
 }
 
 #[test]
-fn sand_that_is_simulated_elsewhere_is_felt_by_more_fingers_than_it_was_made_for() {
+fn sand_simulated_elsewhere_is_felt_by_more_fingers_than_planned() {
     let design = SandDesign { cells: 128, ..SandDesign::default() };
     let (source, mut worker) = SandSource::threaded(&design, 1).unwrap();
     let surface = Surface::new(source, SIDE_M, SIDE_M).unwrap();

@@ -28,7 +28,7 @@ fn power(roughness: f64, speed_m_s: f64, output: Quantity, weight: &dyn Fn(f64) 
 }
 
 #[test]
-fn a_matte_plate_is_felt_at_least_3_db_above_a_shiny_one_at_every_speed() {
+fn a_matte_plate_is_felt_3_db_above_a_shiny_one() {
     let mut least = f64::INFINITY;
     for speed_m_s in [0.03, 0.05, 0.1, 0.2, 0.3, 0.5] {
         let above_db = |output, weight: &dyn Fn(f64) -> f64| {
@@ -57,7 +57,7 @@ impl Tap for Heights {
 /// The law of the document, with the shipped growth and outer scale in it: power ∝ f^−α, α = 2.5 −
 /// 1.5 R.
 #[test]
-fn what_passes_under_the_finger_falls_by_3_db_alpha_an_octave_from_500_to_50_micrometres() {
+fn what_passes_a_finger_falls_by_3_db_alpha_an_octave() {
     const SPEED_M_S: f64 = 0.1;
     const STROKES: u64 = 48;
     // 500 to 50 µm at that speed, in third octaves: 200 to 2000 Hz.

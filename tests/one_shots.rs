@@ -102,7 +102,7 @@ fn rms(x: &[f32]) -> f64 {
 }
 
 #[test]
-fn three_hundred_shards_in_a_tick_keep_no_bell_waiting_and_no_finger_still() {
+fn three_hundred_shards_in_a_tick_drop_nothing_else() {
     let mut one = None;
     for count in [1, 5, 16, 40, 100, 300] {
         let mut games = [Game::new(), Game::new()];
@@ -156,7 +156,7 @@ fn sixty_shots_a_second_for_a_minute_never_lag() {
 }
 
 #[test]
-fn what_is_removed_right_after_a_strike_rings_out_as_if_it_had_stayed() {
+fn a_body_removed_after_a_strike_rings_out() {
     let stock = |shape, material, size_m| Body::stock(shape, material, size_m).unwrap();
     for shape in [
         stock(Stock::Plate, Material::STEEL, 0.4),
@@ -187,7 +187,7 @@ fn what_is_removed_right_after_a_strike_rings_out_as_if_it_had_stayed() {
 }
 
 #[test]
-fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
+fn bodies_beyond_the_limit_fade_quietest_first_without_a_click() {
     let Engine { mut scene, mut renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
     let mut audio = Vec::new();
     let mut play = |audio: &mut Vec<f32>, blocks: usize| {
@@ -241,7 +241,7 @@ fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
 }
 
 #[test]
-fn a_stock_body_that_was_there_before_costs_the_game_next_to_nothing() {
+fn a_known_stock_body_costs_the_game_next_to_nothing() {
     let Engine { mut scene, mut renderer, .. } = common::raw_live(RATE_HZ).build().unwrap();
     let (mut took, mut fresh) = (Vec::new(), Vec::new());
     for tick in 0..300 {

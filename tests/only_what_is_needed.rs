@@ -49,7 +49,7 @@ fn error_db(found: &[f32], reference: &[f32]) -> f64 {
 }
 
 #[test]
-fn modes_that_nobody_hears_are_left_out_and_the_error_stays_below_them() {
+fn inaudible_modes_are_left_out_with_the_error_below_them() {
     let all = body(400);
     let whole = strike(Config { culling: None, ..Config::default() }, all.clone(), 0);
     // What is left out, how many modes must go, and how much of the sound may go with them.
@@ -119,7 +119,7 @@ fn two_fingers_on_two_positions_add_up() {
 }
 
 #[test]
-fn a_modes_file_may_list_positions_and_is_refused_when_they_do_not_fit() {
+fn a_modes_file_may_list_positions_and_is_refused_when_wrong() {
     let text = r#"{"format":"asperity.modes","version":1,"modes":[{"frequency_hz":440.0,"decay_per_s":3.0,"amplitude":1.0}],"positions":[[0.5],[-2.0]]}"#;
     let model = ModalModel::parse(text).unwrap();
     assert_eq!(model.position_count(), 3);
@@ -251,7 +251,7 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
 /// Modes that are left out by ear are not those that err least by waveform
 /// (`cli/tests/perceptual_order.rs` holds what is heard).
 #[test]
-fn a_late_engine_whose_bodies_are_most_of_its_work_leaves_out_modes_and_no_finger() {
+fn a_late_engine_of_many_bodies_sheds_modes_and_no_finger() {
     let stroked = |late: bool| {
         let mut fingers = TenFingers::on(body(2000), Config { culling: None, ..Config::default() });
         fingers.blocks(200, None);

@@ -67,7 +67,7 @@ fn what_is_wrong_in_a_table_is_said_by_name() {
 }
 
 #[test]
-fn a_game_opens_a_scene_file_with_a_live_clock_and_the_same_levels() {
+fn a_game_opens_a_scene_file_with_the_same_levels() {
     let file =
         SceneFile::parse(&format!("[[surface]]\nname = \"s\"\n{SURFACE}\n"), Path::new("s.toml")).unwrap();
     let live = Overrides { clock: Some(ClockMode::LIVE), ..Overrides::default() };
@@ -90,7 +90,7 @@ fn sand_of_a_live_scene_brings_its_worker() {
 }
 
 #[test]
-fn another_integrator_than_the_one_asked_for_is_told_and_so_are_sub_steps() {
+fn an_integrator_replaced_and_sub_steps_are_reported() {
     let told = |integrator, contact_stiffness_n_m| {
         let probe = Probe { contact_stiffness_n_m, ..Probe::default() };
         Config { integrator, probe, ..Config::default() }.build().unwrap().remarks

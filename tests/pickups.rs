@@ -158,7 +158,7 @@ fn a_tap_on_a_free_bar_is_read_as_its_closed_form() {
 }
 
 #[test]
-fn a_tap_on_a_plate_held_at_its_edges_is_read_as_its_closed_form() {
+fn a_tap_on_a_clamped_plate_is_its_closed_form() {
     // (5, 4) and (3, 5) are one pitch: what is read of it is their sum.
     let (twin, other) = (22, 26);
     assert_eq!(plate_orders(twin).map(|x| x as i32), [5, 4]);
@@ -204,7 +204,7 @@ fn a_tap_here_is_read_there_as_one_there_is_read_here() {
 }
 
 #[test]
-fn readings_do_not_depend_on_blocks_or_levels_and_leave_the_sound_alone() {
+fn readings_do_not_depend_on_blocks_and_leave_the_sound_alone() {
     let plain = Body::new(plate_body()).pickup(up([0.1, 0.1, 0.0]));
     let loud = plain.clone().strike_gain(0.03).gain(7.0);
     let one = tapped(plain.clone(), [0.2, 0.13, 0.0], 8000, 512);
@@ -292,7 +292,7 @@ fn a_tap_moves_a_place_no_further_than_its_modes_can() {
 }
 
 #[test]
-fn a_body_that_a_finger_holds_is_read_as_damped_as_it_is_heard() {
+fn a_body_under_a_finger_is_read_as_damped_as_it_sounds() {
     // One mode: what is read and what is heard of it differ by a factor.
     let shapes = shapes(sheet(PLATE_M, [40, 30]), 1, |_| [0.0, 0.0, 1.0], plate_shape);
     let model = ModalModel::parse(&modes_file(&shapes, plate_hz, DECAY_PER_S)).unwrap();

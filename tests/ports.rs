@@ -114,7 +114,7 @@ impl Tap for Nothing {
 }
 
 #[test]
-fn a_pcm_port_gives_the_very_samples_that_leave_at_any_rate_and_in_any_blocks() {
+fn a_pcm_port_gives_the_leaving_samples_at_any_rate() {
     for rate_hz in [8_000.0, 22_050.0, 44_100.0, 48_000.0] {
         for frames in [1, 64, 333] {
             let mut game = Game::new(rate_hz);
@@ -170,7 +170,7 @@ impl Tap for Rows {
 }
 
 #[test]
-fn a_force_port_gives_the_rows_of_an_offline_render_and_sums_them_for_each_hand() {
+fn a_force_port_gives_offline_rows_and_sums_them_by_hand() {
     for (rate_hz, force_rate_hz) in
         [(44_100.0, 1000.0), (44_100.0, 5000.0), (22_050.0, 1000.0), (192_000.0, 2000.0)]
     {
@@ -202,7 +202,7 @@ fn a_force_port_gives_the_rows_of_an_offline_render_and_sums_them_for_each_hand(
 }
 
 #[test]
-fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_audio_half_nothing() {
+fn a_stalled_reader_loses_the_oldest_and_knows_how_many() {
     let mut game = Game::new(44_100.0);
     let mut pcm = game.scene.open_port(Pcm { from: Feed::Haptic(ChannelId(0)), holds_s: 0.25 }).unwrap();
     let mut force = game.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.25 }).unwrap();
@@ -235,7 +235,7 @@ fn reduced(samples: &[f32], settings: PointSettings, rate_hz: f64) -> Vec<Point>
 }
 
 #[test]
-fn points_and_levels_are_those_of_the_offline_reduction_to_the_bit_in_any_blocks() {
+fn points_and_levels_are_those_of_the_offline_reduction() {
     for (rate_hz, frames) in [(8_000.0, 64), (44_100.0, 1), (44_100.0, 333), (48_000.0, 64)] {
         let mut game = Game::new(rate_hz);
         let from = Feed::Haptic(ChannelId(0));
@@ -259,7 +259,7 @@ fn points_and_levels_are_those_of_the_offline_reduction_to_the_bit_in_any_blocks
 }
 
 #[test]
-fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_audio_half_nothing() {
+fn a_stalled_reader_of_points_and_pcm_costs_the_audio_half_nothing() {
     let mut game = Game::new(44_100.0);
     let from = Feed::Haptic(ChannelId(0));
     let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 0.25 }).unwrap();
@@ -311,7 +311,7 @@ impl Runtime {
 }
 
 #[test]
-fn frames_keep_a_headsets_rules_through_pauses_hitches_and_a_lost_focus_and_count_every_point() {
+fn frames_keep_a_headsets_rules_and_count_every_point() {
     for (first_frame_s, full_scale, drift) in [(0.0, 1.0, 1.0), (0.05, 2e-4, 1.0003), (0.3, 1e-5, 0.9997)] {
         let mut game = Game::new(48_000.0);
         let from = Feed::Haptic(ChannelId(0));
@@ -392,7 +392,7 @@ fn readers_on_threads_of_their_own_get_every_sample() {
 }
 
 #[test]
-fn what_a_port_cannot_be_is_refused_by_name_and_a_dropped_reader_makes_room() {
+fn impossible_ports_are_refused_and_a_dropped_reader_makes_room() {
     let config = Config { max_ports: 2, ..Config::default() };
     let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     let surface = scene.add_surface(plate(0.5)).unwrap();
@@ -419,7 +419,7 @@ fn what_a_port_cannot_be_is_refused_by_name_and_a_dropped_reader_makes_room() {
 }
 
 #[test]
-fn sand_is_seen_as_it_moves_tile_by_tile_without_the_audio_half() {
+fn sand_is_seen_moving_without_the_audio_half() {
     let design = SandDesign { width_m: 0.1, height_m: 0.1, cells: 256, ..SandDesign::default() };
     let (source, mut worker) = SandSource::threaded(&design, 1).unwrap();
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();

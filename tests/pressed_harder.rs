@@ -33,7 +33,7 @@ fn exponent(levels: &[f64]) -> f64 {
 }
 
 #[test]
-fn a_finger_that_is_pressed_harder_is_felt_more_step_by_step_on_every_ground() {
+fn a_finger_pressed_harder_is_felt_more_on_every_ground() {
     let mut files = Memory::new();
     for (name, ground) in grounds(&[0.2, 0.5, 0.9], 2e-4, &mut files) {
         let growth = |output: &str| {
@@ -56,7 +56,7 @@ fn a_finger_that_is_pressed_harder_is_felt_more_step_by_step_on_every_ground() {
 }
 
 #[test]
-fn metres_that_a_scene_writes_are_the_pad_s_own_and_one_newton_is_the_same_either_way() {
+fn a_scenes_metres_are_the_pads_own_either_way() {
     let files = Memory::new();
     let ground = "roughness = 0.7";
     let full_scale = open(&scene("fingertip", ground, ""), &files).levels.full_scale[0];
@@ -78,7 +78,7 @@ fn metres_that_a_scene_writes_are_the_pad_s_own_and_one_newton_is_the_same_eithe
 }
 
 #[test]
-fn a_force_that_changes_is_felt_to_the_same_bits_in_any_blocks_and_without_a_step() {
+fn a_changing_force_is_felt_without_a_step_in_any_blocks() {
     let files = Memory::new();
     let toml = scene("fingertip", "roughness = 0.5", "limit = false");
     let swelling = stroke(|t| 0.2 + 8.0 * t * t);

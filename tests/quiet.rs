@@ -83,7 +83,7 @@ fn last(samples: &[f32], steps: usize) -> &[f32] {
 }
 
 #[test]
-fn a_move_makes_a_contact_softer_without_a_step_and_louder_again_to_the_bit() {
+fn a_move_softens_and_restores_a_contact_without_a_step() {
     let (mut plain, mut changed) = (Game::new(64), Game::new(64));
     plain.strokes(90);
     changed.strokes(30);
@@ -116,7 +116,7 @@ fn a_move_makes_a_contact_softer_without_a_step_and_louder_again_to_the_bit() {
 }
 
 #[test]
-fn a_body_is_made_softer_while_it_rings_and_comes_back_to_the_bit() {
+fn a_ringing_body_is_made_softer_and_restored_to_the_bit() {
     let (mut plain, mut changed) = (Game::new(64), Game::new(64));
     for game in [&mut plain, &mut changed] {
         game.strokes(30);
@@ -158,7 +158,7 @@ fn mute_is_silence_to_the_bit_and_everything_has_gone_on_meanwhile() {
 }
 
 #[test]
-fn a_paused_game_is_silent_however_long_and_its_contact_comes_back_with_the_next_report() {
+fn a_paused_game_is_silent_until_the_next_report() {
     let mut game = Game::new(64);
     game.strokes(30);
     game.scene.pause().unwrap();
@@ -189,7 +189,7 @@ fn a_paused_game_is_silent_however_long_and_its_contact_comes_back_with_the_next
 }
 
 #[test]
-fn an_end_to_everything_is_silent_within_a_tenth_of_a_second_and_leaves_a_body_as_new() {
+fn an_end_to_everything_is_silent_within_a_tenth_second() {
     let strike = |game: &mut Game| {
         let t = game.time_s();
         game.scene.report(t, ContactEvent::Impact(Impact::on(game.body))).unwrap();

@@ -56,7 +56,7 @@ fn block() -> ModalModel {
 }
 
 #[test]
-fn each_mode_becomes_as_loud_as_its_shape_radiates_and_a_second_time_changes_nothing() {
+fn each_mode_is_as_loud_as_its_shape_radiates() {
     let (plain, loud) = (block(), block().radiating(&Material::STEEL).unwrap());
     assert_eq!(loud.unit, ShapeUnit::PascalsAtOneMetre);
     let shapes = plain.shapes.as_ref().unwrap();
@@ -100,7 +100,7 @@ fn struck(model: ModalModel, block: usize) -> Vec<f32> {
 }
 
 #[test]
-fn a_blow_clicks_as_its_closed_form_says_the_same_in_any_split_and_louder_by_its_gain() {
+fn a_blow_clicks_as_its_closed_form_in_any_split() {
     let loud = block().radiating(&Material::STEEL).unwrap();
     let silent = ModalModel { click: None, ..loud.clone() };
     let (with, without) = (struck(loud.clone(), 512), struck(silent, 512));
@@ -123,7 +123,7 @@ fn a_blow_clicks_as_its_closed_form_says_the_same_in_any_split_and_louder_by_its
 }
 
 #[test]
-fn the_key_of_a_body_is_the_same_and_without_it_nothing_changes() {
+fn the_key_of_a_body_is_stable_and_changes_nothing_when_absent() {
     let folder = std::env::temp_dir().join(format!("asperity-radiating-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("block.modes.json"), block().to_json()).unwrap();

@@ -114,7 +114,7 @@ fn tangential() -> asperity::ActuatorSettings {
 }
 
 #[test]
-fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
+fn ten_seconds_of_a_million_events_each_need_no_more_memory() {
     let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(plate(0.8).body(body)).unwrap();

@@ -150,7 +150,7 @@ fn a_recording_with_edits_renders_to_the_bits_of_the_game() {
 }
 
 #[test]
-fn what_no_recording_can_hold_is_told_and_taken_from_whoever_replays_it() {
+fn what_no_recording_holds_is_taken_from_its_replayer() {
     let mut game = Game::new();
     game.scene.start_recording(&game.names);
     game.play(true);
@@ -182,7 +182,7 @@ impl Write for Shared {
 }
 
 #[test]
-fn a_streamed_recording_is_on_the_disk_while_the_game_runs_and_says_the_same() {
+fn a_streamed_recording_is_on_disk_while_the_game_runs() {
     let [mut kept, mut streamed] = [Game::new(), Game::new()];
     kept.scene.start_recording(&kept.names);
     kept.play(false);
@@ -214,7 +214,7 @@ impl Write for Full {
 }
 
 #[test]
-fn a_recording_that_cannot_be_written_says_so_and_the_game_goes_on() {
+fn a_recording_that_cannot_be_written_is_reported_while_the_game_continues() {
     let mut game = Game::new();
     game.scene.stream_recording(&game.names, Full).unwrap();
     game.play(false);
@@ -243,7 +243,7 @@ fn what_a_reset_drops_is_not_in_the_recording() {
 /// Two fingers on one plate at 60 ticks a second, each tick rendered in a block of 735 frames (44.1
 /// kHz), the first one in a shorter one: the order in which an engine like Godot calls.
 #[test]
-fn a_live_recording_of_two_fingers_and_a_blow_renders_to_the_bits_of_the_game() {
+fn a_live_recording_of_fingers_and_a_blow_renders_the_games_bits() {
     let file = SceneFile::parse(TWO_FINGERS, Path::new("plate.toml")).unwrap();
     let live = Overrides {
         sample_rate_hz: Some(44_100.0),

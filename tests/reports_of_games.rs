@@ -164,7 +164,7 @@ fn a_solver_that_reports_a_force_every_other_step_is_no_drum() {
 }
 
 #[test]
-fn a_finger_that_lifts_off_without_an_end_and_comes_back_fades_and_rises() {
+fn a_finger_lifted_without_an_end_fades_and_rises_on_return() {
     for empty in [2, 3, 5, 10, 14] {
         let log = reports(|step, _, sample| {
             sample.normal_force_n *= f64::from(u8::from(!(60..60 + empty).contains(&step)));
@@ -245,7 +245,7 @@ fn a_finger_that_teleports_at_every_report_is_quiet_and_ends() {
 }
 
 #[test]
-fn a_heavy_stick_that_leaps_over_ribs_is_told_with_its_remedy_and_a_finger_is_not() {
+fn a_leaping_stick_warns_with_its_remedy_and_a_finger_does_not() {
     let over_ribs = |probe: Probe, force_n: f64| {
         let config = Config { probe, ..si_config() };
         let ribs = common::grating(2e-3, 0.5e-3);
@@ -277,7 +277,7 @@ impl Tap for MeanForce {
 }
 
 #[test]
-fn a_probe_thrown_off_the_crest_of_a_roof_presses_as_told_or_is_told() {
+fn a_probe_off_a_roofs_crest_presses_as_computed_or_is_reported() {
     let (mut told, mut tried) = (0, 0);
     for (name, probe) in asperity::PROBE_PRESETS {
         for (roof_m, slope) in [(0.5, 0.5), (1.0, 0.5), (0.5, 0.2), (0.25, 0.1)] {

@@ -74,7 +74,7 @@ fn a_strike_that_waits_is_withdrawn_and_one_that_sounded_is_not() {
 }
 
 #[test]
-fn a_rollback_that_finds_a_missed_strike_plays_it_at_once_and_moves_no_clock() {
+fn a_missed_strike_found_by_rollback_plays_at_once() {
     let mut game = Game::new();
     for tick in 0..100 {
         game.strike(tick, 1.0);

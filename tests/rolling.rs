@@ -118,7 +118,7 @@ fn what_rolls_is_darker_than_what_slides_and_its_envelope_another() {
 }
 
 #[test]
-fn a_contact_that_slides_on_says_so_with_its_whole_speed_and_any_block_gives_the_same_bits() {
+fn a_continuing_contact_reports_its_whole_speed_in_any_blocks() {
     let plain = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| None);
     // A hair more than the path, which is a number's rounding; what slips faster spins.
     let told = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| Some((0.2019, 0.01)));
@@ -169,7 +169,7 @@ fn wheel_db(speed_m_s: f64, slip_m_s: f64) -> (f64, Vec<String>) {
 }
 
 #[test]
-fn a_wheel_that_spins_on_the_spot_is_heard_the_more_it_slips() {
+fn a_wheel_spinning_on_the_spot_is_louder_with_more_slip() {
     let levels = [1.0, 4.0, 13.0].map(|slip_m_s| wheel_db(0.0, slip_m_s));
     println!("{levels:?}");
     assert!(levels.iter().all(|(_, why)| why.is_empty()));

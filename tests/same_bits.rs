@@ -68,7 +68,7 @@ fn bits(samples: &[f32]) -> u64 {
 }
 
 #[test]
-fn a_portable_engine_feels_and_sounds_the_same_to_the_bit_on_every_processor() {
+fn a_portable_engine_has_the_same_bits_on_every_processor() {
     let [haptic, audio] = render();
     assert!(
         haptic.iter().any(|x| x.abs() > 1e-4) && audio.iter().any(|x| x.abs() > 1e-4),

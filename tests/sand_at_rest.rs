@@ -125,7 +125,7 @@ fn assert_at_rest(name: &str, design: &SandDesign, hand: &Hand, blow: f64) {
 }
 
 #[test]
-fn a_resting_finger_leaves_its_print_whenever_it_comes_and_is_not_hit() {
+fn a_resting_finger_prints_the_sand_without_a_blow() {
     let cases =
         [(1.0, 0, 0.2), (3.0, 32, 0.2), (3.0, 64, 1.0), (6.0, 4410, 0.2), (2.3, 1001, 2.0), (4.7, 65, 0.4)];
     for (force_n, sample, rests_s) in cases {
@@ -135,7 +135,7 @@ fn a_resting_finger_leaves_its_print_whenever_it_comes_and_is_not_hit() {
 }
 
 #[test]
-fn the_print_that_was_felt_is_told_though_shallow_sand_slides_into_it_afterwards() {
+fn the_felt_print_is_reported_though_sand_slides_into_it() {
     // The default bed stands at 30 degrees: what is steeper slides once the finger has left.
     let design = SandDesign { talus_deg: SandDesign::default().talus_deg, ..bed() };
     for force_n in [1.0, 3.0, 6.0] {
@@ -149,7 +149,7 @@ fn the_print_that_was_felt_is_told_though_shallow_sand_slides_into_it_afterwards
 }
 
 #[test]
-fn a_finger_that_drags_and_stops_leaves_a_print_of_its_law_and_is_not_hit() {
+fn a_finger_that_stops_dragging_leaves_its_print_and_no_blow() {
     for (normal_force_n, drags_m_s, reports_hz) in [(1.5, 0.08, 60.0), (3.0, 0.13, 90.0), (6.0, 0.05, 144.0)]
     {
         let hand =
@@ -172,7 +172,7 @@ fn hardest(render: &Render, felt: &Felt, force_n: f64, (from_s, until_s): (f64, 
 }
 
 #[test]
-fn a_finger_stopped_dead_in_sand_is_not_hit_at_30_reports_a_second() {
+fn a_finger_stopped_dead_in_sand_is_not_hit_at_30_hz() {
     let cases = [
         (1.5, 0.1, 30.0),
         (1.5, 0.5, 30.0),
@@ -209,7 +209,7 @@ fn a_finger_stopped_dead_in_sand_is_not_hit_at_30_reports_a_second() {
 /// A finger that goes to and fro in its own furrow reads the level around it and not the furrow's
 /// bottom.
 #[test]
-fn a_finger_that_goes_back_in_its_own_furrow_does_not_fall_in_with_every_frame() {
+fn a_finger_returning_in_its_furrow_does_not_fall_every_frame() {
     for (normal_force_n, drags_m_s) in [(1.5, 0.1), (1.5, 0.4), (3.0, 0.4)] {
         let there_s = 0.05 / drags_m_s;
         let there = Hand {
@@ -284,7 +284,7 @@ fn a_bed_has_a_bottom_that_carries_what_the_sand_does_not() {
 }
 
 #[test]
-fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it() {
+fn a_resting_finger_in_sand_wakes_when_another_moves_the_sand() {
     // The second finger drags past the first one, 6 mm beside it.
     let mut log = Hand::rests(2.0, 0.0, 1.0).log();
     let by = Hand { begins_s: 0.4, drags_m_s: 0.2, drags_s: 0.2, rests_s: 0.1, ..Hand::rests(2.0, 0.0, 0.0) };

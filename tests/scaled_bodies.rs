@@ -3,7 +3,7 @@
 use asperity::{Material, ModalModel, ModalModelError, Mode, Stock};
 
 #[test]
-fn a_scaled_stock_body_has_the_pitches_and_decays_of_the_one_that_is_made_so_large() {
+fn a_scaled_stock_body_sounds_as_one_made_so_large() {
     for (shape, material) in
         [(Stock::Bar, Material::STEEL), (Stock::Plate, Material::WOOD), (Stock::Bowl, Material::CERAMIC)]
     {
@@ -33,7 +33,7 @@ fn a_scaled_stock_body_has_the_pitches_and_decays_of_the_one_that_is_made_so_lar
 }
 
 #[test]
-fn sizes_that_nothing_has_are_refused_by_name_and_size_one_changes_nothing() {
+fn impossible_sizes_are_refused_and_size_one_changes_nothing() {
     let bowl = Stock::Bowl.modes(&Material::GLASS, 0.1).unwrap();
     for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let refused = bowl.clone().scaled(size, &Material::GLASS);

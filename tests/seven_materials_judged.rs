@@ -31,7 +31,7 @@ fn lot(from: u64, count: u64) -> Vec<Vec<Percept>> {
 }
 
 #[test]
-fn the_observer_names_the_seven_materials_and_is_at_chance_when_labels_are_shuffled() {
+fn the_observer_names_seven_materials_and_none_when_shuffled() {
     println!("observer {}", constants::constants_sha256());
     let (templates, trials) = (lot(50_000, TEMPLATES), lot(90_000, TRIALS));
     for kappa in [0.0, 0.5, 1.0, 2.0] {

@@ -57,7 +57,7 @@ fn assert_adds_up(a: &ContactLog, b: &ContactLog) {
 }
 
 #[test]
-fn two_contacts_on_one_body_sound_as_their_sum_and_are_felt_apart() {
+fn two_contacts_on_one_body_sum_and_are_felt_apart() {
     assert_adds_up(&finger(1, "s", 0, 0.1), &finger(2, "s", 1, 0.17));
 }
 

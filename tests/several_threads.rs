@@ -22,7 +22,7 @@ fn bits([haptic, audio]: &[Vec<f32>; 2]) -> Vec<u32> {
 }
 
 #[test]
-fn any_number_of_threads_and_any_split_into_blocks_render_the_same_bits() {
+fn any_threads_and_blocks_render_the_same_bits() {
     let alone = Strokes::new(7, 200, 1).render(40_000, || 256);
     assert!(alone.iter().all(|channel| channel.iter().any(|x| x.abs() > 1e-5)), "nothing to compare");
     for (threads, frames) in [(2, 256), (3, 64), (8, 256), (2, 37), (8, 500)] {
@@ -32,7 +32,7 @@ fn any_number_of_threads_and_any_split_into_blocks_render_the_same_bits() {
 }
 
 #[test]
-fn a_random_game_of_every_kind_of_event_renders_the_same_bits_on_three_threads() {
+fn a_random_game_renders_the_same_bits_on_three_threads() {
     let play = |threads| {
         let (mut game, mut renderer) = RandomGame::with(7, Config { threads, ..Config::default() });
         let mut all = [Vec::new(), Vec::new()];
@@ -89,7 +89,7 @@ fn no_more_threads_than_sixty_four_are_taken_and_at_least_one() {
 }
 
 #[test]
-fn a_second_thread_costs_at_most_three_microseconds_a_block_where_nothing_sounds() {
+fn a_second_thread_costs_three_microseconds_a_silent_block() {
     let cost_s = |threads| {
         let mut idle = Strokes::new(0, 1, threads);
         let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);

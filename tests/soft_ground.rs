@@ -73,7 +73,7 @@ fn felt(config: Config, surface: Surface, log: &ContactLog) -> Felt {
 }
 
 #[test]
-fn a_finger_dragged_through_sand_rides_over_a_stone_as_far_as_the_law_says() {
+fn a_finger_in_sand_rides_over_a_stone_by_the_law() {
     let force_n = 3.0;
     let log = along_u(0.9, 0.02, 0.07, |uv| ContactSample {
         normal_force_n: force_n,
@@ -105,7 +105,7 @@ fn a_finger_dragged_through_sand_rides_over_a_stone_as_far_as_the_law_says() {
 }
 
 #[test]
-fn a_finger_leaves_a_shallower_print_over_a_stone_and_the_sand_keeps_its_volume() {
+fn a_finger_prints_less_deeply_over_a_stone_and_keeps_the_volume() {
     let log =
         along_u(0.3, 0.05, 0.0, |uv| ContactSample { normal_force_n: 3.0, uv, ..ContactSample::default() });
     for (buried, wanted_m) in [(None, 0.003), (Some(STONE), 0.00155)] {
@@ -119,7 +119,7 @@ fn a_finger_leaves_a_shallower_print_over_a_stone_and_the_sand_keeps_its_volume(
 }
 
 #[test]
-fn a_device_meets_the_stone_at_its_top_with_the_engine_s_own_force() {
+fn a_device_meets_the_stone_with_the_engines_own_force() {
     let law = TipLaw::Sand(bed(Some(STONE)).law);
     for (u_m, depth_m) in [(0.05, 0.001), (0.05, 0.0018), (0.047, 0.0022), (0.054, 0.0026), (0.02, 0.0026)] {
         let log = along_u(0.2, u_m, 0.0, |uv| ContactSample {
@@ -184,7 +184,7 @@ fn share_felt(count: usize, tip_radius_m: f64, compliance_m_n: f64, force_n: f64
 }
 
 #[test]
-fn a_ball_on_a_soft_map_feels_the_mean_of_the_relief_under_it_as_the_closed_form_says() {
+fn a_ball_on_a_soft_map_rides_the_mean_of_the_relief() {
     let mut worst = 0.0_f64;
     for (tip_radius_m, compliance_m_n, force_n) in
         [(1e-3, 1e-4, 0.5), (1e-3, 1e-3, 0.3), (5e-4, 3e-4, 0.4), (4e-3, 5e-4, 1.0)]

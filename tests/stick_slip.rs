@@ -77,7 +77,7 @@ fn strongest_hz(sound: &[f32]) -> f64 {
 }
 
 #[test]
-fn the_period_of_a_bowed_oscillator_is_that_of_the_closed_form_at_every_rate() {
+fn a_bowed_oscillators_period_is_its_closed_form_at_every_rate() {
     let mut worst = 0.0_f64;
     for (frequency_hz, mass_kg, depth) in
         [(50.0, 0.5, 3.0), (220.0, 0.08, 5.0), (430.0, 0.02, 2.0), (800.0, 0.004, 8.0)]
@@ -118,7 +118,7 @@ fn bowed_bar(friction: Friction) -> (Engine, asperity::BodyId, asperity::Surface
 }
 
 #[test]
-fn a_bar_bowed_at_its_end_sings_near_one_of_its_modes_and_stops_when_the_bow_does() {
+fn a_bar_bowed_at_its_end_sings_near_a_mode_until_released() {
     let (mut engine, _, surface) = bowed_bar(ROSIN);
     draw(&mut engine, surface, 0.08, 2.0, 2.0);
     let end = ContactEvent::End { contact: ContactId(1) };
@@ -139,7 +139,7 @@ fn a_bar_bowed_at_its_end_sings_near_one_of_its_modes_and_stops_when_the_bow_doe
 }
 
 #[test]
-fn a_finger_at_rest_that_sticks_damps_a_struck_bar_and_never_feeds_it() {
+fn a_resting_finger_damps_a_struck_bar_and_never_feeds_it() {
     let struck = |pressed: bool| {
         let (mut engine, body, surface) = bowed_bar(ROSIN);
         if pressed {
@@ -210,7 +210,7 @@ fn busy(mut block: impl FnMut() -> usize) -> (Vec<f32>, u64, asperity::Stats) {
 }
 
 #[test]
-fn any_split_into_blocks_rubs_the_same_bits_without_the_heap_and_who_has_to_wait_is_counted() {
+fn blocks_rub_the_same_bits_and_waiting_contacts_are_counted() {
     let (whole, heap, stats) = busy(|| 60_000);
     assert!(whole.iter().all(|y| y.is_finite()) && whole.iter().any(|y| y.abs() > 1e-6));
     assert_eq!(heap, 0);
@@ -226,7 +226,7 @@ fn any_split_into_blocks_rubs_the_same_bits_without_the_heap_and_who_has_to_wait
 }
 
 #[test]
-fn random_strokes_on_random_bodies_stay_finite_and_below_what_friction_can_drive() {
+fn random_strokes_stay_finite_and_below_what_friction_can_drive() {
     let mut rng = Rng::new(30);
     for game in 0..60 {
         let stocks = [Stock::Bar, Stock::Plate, Stock::Bowl, Stock::Tube, Stock::Disc, Stock::Block];

@@ -155,7 +155,7 @@ fn what_is_missing_is_named_with_what_would_be_right() {
 }
 
 #[test]
-fn a_coloured_map_without_a_channel_is_told_with_the_key_that_names_one() {
+fn a_coloured_map_without_a_channel_warns_with_the_key() {
     assert!(Engine::open_from(&memory(), "level/scene.toml").unwrap().remarks.is_empty());
     let mut files = memory();
     files.add("level/scene.toml", SCENE.replace("channel = \"g\"\n", ""));

@@ -90,7 +90,7 @@ fn a_mode_struck_on_its_node_line_is_forty_decibels_down() {
 }
 
 #[test]
-fn a_strike_where_the_own_amplitudes_belong_is_the_strike_without_a_place() {
+fn a_strike_where_the_amplitudes_belong_needs_no_place() {
     let shapes = bar();
     let at_m = shapes.points_m[shapes.struck_point];
     let placed = struck(bar_body(), |body| Impact {
@@ -104,7 +104,7 @@ fn a_strike_where_the_own_amplitudes_belong_is_the_strike_without_a_place() {
 }
 
 #[test]
-fn a_finger_that_presses_harder_and_harder_holds_a_body_the_same_whatever_the_blocks() {
+fn a_finger_pressing_harder_holds_a_body_alike_in_any_blocks() {
     let squeezed = |block: usize| {
         let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
         let body = engine.scene.add_body(plate_body()).unwrap();
@@ -272,7 +272,7 @@ fn decay_per_s(sound: &[f32], hz: f64, from_s: f64, to_s: f64) -> f64 {
 }
 
 #[test]
-fn a_held_bar_rings_as_long_as_body_and_finger_say_and_let_go_as_before() {
+fn a_held_bar_damps_by_body_and_finger_until_released() {
     use asperity::dsp::held::{Hold, Pole, held as poles_held};
     let sound = held(&[(0.28, 1.0)], 1.5, 5.0);
     let free: Vec<Pole> = (0..5).map(|m| Pole { decay_per_s: 4.0, frequency_hz: bar_hz(m) }).collect();
@@ -297,7 +297,7 @@ fn a_held_bar_rings_as_long_as_body_and_finger_say_and_let_go_as_before() {
 }
 
 #[test]
-fn a_body_that_was_held_and_has_come_to_rest_rings_as_one_that_never_was_to_the_bit() {
+fn a_released_body_at_rest_rings_as_if_never_held() {
     let struck = |held_n: Option<f64>, struck_s: f64, from_s: f64| {
         let mut engine = Config::default().build().unwrap();
         let body = engine.scene.add_body(bar_body()).unwrap();
@@ -328,7 +328,7 @@ fn a_body_that_was_held_and_has_come_to_rest_rings_as_one_that_never_was_to_the_
 }
 
 #[test]
-fn a_contact_that_tells_its_own_place_is_there_and_not_where_its_surface_lies() {
+fn a_contact_with_its_own_place_is_there_not_at_its_surface() {
     let loud = |at_m: Option<[f64; 3]>, frame: bool| {
         let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
         let body = engine.scene.add_body(plate_body()).unwrap();

@@ -12,7 +12,7 @@ fn db(ratio: f64) -> f64 {
 }
 
 #[test]
-fn a_free_bar_sounds_as_euler_and_bernoulli_say_wherever_it_is_struck() {
+fn a_free_bar_sounds_as_euler_and_bernoulli_say_everywhere() {
     let field = StrikeField::new(bar());
     let mut worst = 0.0_f64;
     for step in 0..=997 {

@@ -4,13 +4,13 @@
 //! |---|---|---|---|
 //! | 1 | a 30 Hz filter in `f32` misplaces the finger | `the_path_ends_where_the_finger_is_far_from_the_origin` | dsp `a_million_periods_away_the_velocity_is_as_smooth` |
 //! | 2 | held events wobble by a third; wraps and teleports fling the path | `sixty_hertz_events_give_an_even_path_and_held_ones_do_not`, `a_wrap_is_no_movement_and_a_teleport_no_stroke` | dsp `jittered_noisy_events_leave_under_five_percent_of_ripple` |
-//! | 3 | an explicit damper, or a step too long for the spring, is silently wrong | `every_stiffness_and_integrator_stays_bounded` | dsp `errors_stay_below_the_bars_on_the_suite_and_on_profiles_nobody_tuned_on`, `the_builder_refuses_sub_steps_or_switches_and_says_so` |
+//! | 3 | an explicit damper, or a step too long for the spring, is silently wrong | `every_stiffness_and_integrator_stays_bounded` | dsp `errors_stay_below_the_bars_on_unseen_profiles`, `the_builder_refuses_sub_steps_or_switches_and_says_so` |
 //! | 4 | the pad never leaves a smooth grating: no collisions, no sound | `a_smooth_grating_without_a_single_collision_sounds` | `tests/six_plates.rs` |
-//! | 5 | noise level that does not follow the speed, and a place that never feels the same twice | `the_same_place_is_the_same_on_the_way_back` | dsp `four_times_the_speed_raises_the_level_by_6_db_times_alpha_minus_1` |
+//! | 5 | noise level that does not follow the speed, and a place that never feels the same twice | `the_same_place_is_the_same_on_the_way_back` | dsp `four_times_the_speed_raises_the_level_by_alphas_law` |
 //! | 6 | texel-rate buzz of bilinear maps; terraces of 8-bit maps | `an_oblique_stroke_is_as_clean_as_the_map` | texture `the_terraces_of_an_8_bit_ramp_are_not_felt_after_debanding` |
 //! | 7 | a resonator fed force instead of impulse changes level with the rate; in `f32` direct form it is out of tune | `a_thirty_hertz_mode_is_in_tune_at_every_rate` | `tests/rates.rs`, dsp `an_impact_is_equally_loud_at_every_rate` |
-//! | 8 | a pulse shorter than a sample loses its area | `an_impact_shorter_than_a_sample_keeps_its_momentum` | dsp `a_struck_mode_up_to_10_khz_answers_like_the_integrated_pulse_within_1_percent` |
-//! | 9 | denormals slow a decayed body down | `a_body_that_rang_out_is_exactly_silent` | dsp `no_state_is_ever_denormal_while_a_body_rings_out`, `a_contact_that_came_to_rest_is_not_slower_than_a_busy_one` |
+//! | 8 | a pulse shorter than a sample loses its area | `an_impact_shorter_than_a_sample_keeps_its_momentum` | dsp `a_struck_mode_answers_like_the_integrated_pulse_within_1_percent` |
+//! | 9 | denormals slow a decayed body down | `a_body_that_rang_out_is_exactly_silent` | dsp `no_state_is_ever_denormal_while_a_body_rings_out`, `a_resting_contact_costs_no_more_than_a_busy_one` |
 //! | 10 | an unloaded finger drifts away | `an_unloaded_finger_stays_on_its_leash` | dsp `an_unloaded_finger_stays_on_its_leash_and_comes_back` |
 
 use crate::common;

@@ -50,7 +50,7 @@ fn gain_and_possible() -> (f64, f64) {
 }
 
 #[test]
-fn two_threads_on_one_engine_come_near_to_two_engines_that_share_nothing() {
+fn two_threads_on_one_engine_nearly_reach_two_engines() {
     // Whoever else wants the second processor hurts threads that wait for each other more than two
     // that do not, for seconds at a time: the best of several tries is the engine's.
     let mut best: Option<(f64, f64)> = None;

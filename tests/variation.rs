@@ -59,7 +59,7 @@ fn varied(model: ModalModel, variation: f64) -> Body {
 }
 
 #[test]
-fn blows_on_a_family_are_its_takes_and_never_one_twice_in_a_row() {
+fn blows_on_a_family_are_its_takes_never_repeated() {
     let takes = blows(&varied(family(), 0.0), 1, &[0, 1, 2, 3], 256);
     let heard = blows(&varied(family(), 1.0), 1, &[0; 12], 256);
     let take_of = |sound: &Vec<f32>| {
@@ -101,7 +101,7 @@ fn varied_blows_are_those_of_the_seed_in_any_blocks() {
 }
 
 #[test]
-fn every_kind_of_body_varies_and_none_by_more_than_a_player_does() {
+fn every_kind_of_body_varies_no_more_than_a_player() {
     let shaped = modes_file(&closed_forms::bar(), |m| 220.0 * (FREE_BAR[m] / FREE_BAR[0]).powi(2), 14.0);
     let band = DiffuseBand {
         centre_hz: 900.0,

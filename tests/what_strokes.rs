@@ -66,7 +66,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
-fn a_pen_is_louder_than_a_finger_on_every_hard_material_and_a_rod_than_a_pen_and_a_pen_than_a_nail() {
+fn a_pen_is_louder_than_a_finger_or_nail_below_a_rod() {
     for roughness in [0.2, 0.9] {
         let mut over_default = Vec::new();
         for body in HARD {
@@ -84,7 +84,7 @@ fn a_pen_is_louder_than_a_finger_on_every_hard_material_and_a_rod_than_a_pen_and
 }
 
 #[test]
-fn a_steel_tip_is_brighter_than_a_plastic_one_on_what_is_hard() {
+fn a_steel_tip_is_brighter_than_plastic_on_hard_ground() {
     for body in [Material::STEEL, Material::GLASS, Material::STONE] {
         let [steel, plastic] =
             ["stylus-steel", "stylus"].map(|name| heard(preset(name), body, plate(0.5))[1]);
@@ -94,7 +94,7 @@ fn a_steel_tip_is_brighter_than_a_plastic_one_on_what_is_hard() {
 }
 
 #[test]
-fn what_is_felt_of_a_tool_is_the_same_to_the_bit_with_a_tip_of_its_own_and_without() {
+fn a_tools_own_tip_changes_no_bit_of_what_is_felt() {
     let log = stroke(SIDE_M, 0.1, 1.0, 0.5);
     for name in ["stylus", "fingernail", "rigid"] {
         let with = preset(name);
@@ -119,7 +119,7 @@ fn a_tip_sounds_the_same_in_blocks_of_any_length() {
 }
 
 #[test]
-fn asperities_that_share_the_load_sound_as_the_root_of_their_number_and_are_felt_the_same() {
+fn asperities_sharing_the_load_sound_as_their_numbers_root() {
     let log = stroke(SIDE_M, 0.1, 0.8, 0.5);
     let of = |asperities| {
         let probe = Probe { asperities, ..Probe::default() };
@@ -133,7 +133,7 @@ fn asperities_that_share_the_load_sound_as_the_root_of_their_number_and_are_felt
 // Closed form: a tip that stays on sines of ground is a linear oscillator, and what it sends is
 // k_H times how deep the ground presses into it.
 #[test]
-fn over_a_gentle_grating_a_tip_sends_what_its_shaft_s_impedance_asks() {
+fn over_a_grating_a_tip_sends_what_its_shafts_impedance_asks() {
     let (speed_m_s, wave_m, height_m) = (0.1, 1e-3, 2e-7);
     let tip = HeardTip {
         mass_kg: 1e-3,

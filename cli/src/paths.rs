@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn every_path_of_the_command_line_is_known_to_be_read_or_written() {
+    fn every_path_of_the_command_line_is_read_or_written() {
         let mut found = Vec::new();
         paths(&Arguments::command(), &mut found);
         assert!(found.len() > 30, "{found:?}");

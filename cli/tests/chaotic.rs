@@ -46,7 +46,7 @@ fn moved(log: &str) -> String {
 }
 
 #[test]
-fn every_scene_of_the_demo_repeats_to_the_waveform_or_is_listed_as_chaotic() {
+fn demo_scenes_repeat_to_the_waveform_or_are_listed_chaotic() {
     let folder = tempfile::tempdir().unwrap();
     let (status, _, err) = told(&asperity(folder.path(), &["demo", "-o", "."]));
     assert_eq!((status, err.as_str()), (0, ""));

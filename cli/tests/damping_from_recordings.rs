@@ -59,7 +59,7 @@ fn held_back(modes: &[Mode]) -> Vec<f64> {
 }
 
 #[test]
-fn the_median_of_the_decays_held_back_is_within_a_quarter_where_textbooks_are_off_by_factors() {
+fn the_median_of_held_back_decays_is_within_a_quarter() {
     let mut off_by_the_book = Vec::new();
     for (name, textbook) in RECORDINGS {
         let Some(modes) = recorded(name) else { return skip("no corpus of recordings") };

@@ -51,7 +51,7 @@ fn csv(path: &Path, rows: &[[f64; 2]]) {
 }
 
 #[test]
-fn a_sweep_as_wav_or_table_becomes_a_profile_that_a_scene_takes() {
+fn a_sweep_as_wav_or_table_becomes_a_profile() {
     let scene = Scene::new();
     let folder = scene.folder.path();
     let rows = sweep(4.0);

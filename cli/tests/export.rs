@@ -78,7 +78,7 @@ fn what_is_exported_and_imported_again_has_its_modes_places_and_shapes() {
 }
 
 #[test]
-fn a_packed_document_is_made_of_chunks_of_four_bytes_that_end_where_it_says() {
+fn a_packed_document_has_chunks_of_four_bytes_that_end_right() {
     let folder = tempfile::tempdir().unwrap();
     put(folder.path(), "bell.modes.json", &body());
     let (status, ..) = told(&asperity(folder.path(), &["export", "bell.modes.json", "-o", "bell.glb"]));
@@ -101,7 +101,7 @@ fn a_packed_document_is_made_of_chunks_of_four_bytes_that_end_where_it_says() {
 }
 
 #[test]
-fn bodies_without_shapes_and_documents_of_other_kinds_are_refused_and_nothing_is_left() {
+fn bodies_without_shapes_and_other_documents_are_refused_without_remains() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let mut plain = body();

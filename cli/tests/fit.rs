@@ -141,7 +141,7 @@ fn asperity_model(folder: &Path, name: &str) -> asperity::ModalModel {
 }
 
 #[test]
-fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
+fn a_fitted_body_struck_and_fitted_again_is_the_same_body() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     std::fs::copy(
@@ -226,7 +226,7 @@ fn several_strikes_become_strike_positions_of_one_body() {
 }
 
 #[test]
-fn a_family_counts_the_modes_of_its_file_and_warns_of_every_take() {
+fn a_family_counts_its_modes_and_warns_of_every_take() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write(&folder.join("a.wav"), &noisy(ringing(1.0, [1.0, 1.0, 1.0, 0.0, 1.0]), 1e-4));
@@ -281,7 +281,7 @@ fn plate_file(path: &Path, stiffer: f64, shape: impl Fn(usize) -> usize) {
 }
 
 #[test]
-fn strikes_on_a_plate_with_shapes_are_assigned_to_their_places_and_another_body_is_told_from_it() {
+fn strikes_on_a_plate_are_assigned_to_their_places() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (strike, at) in STRUCK_M.iter().enumerate() {
@@ -426,7 +426,7 @@ fn whatever_is_recorded_gives_a_result_with_warnings_and_no_absurd_mode() {
 }
 
 #[test]
-fn files_that_are_no_recordings_are_refused_in_one_line_and_leave_nothing() {
+fn files_that_are_no_recordings_are_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     recording(folder, "good.wav");

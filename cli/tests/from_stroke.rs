@@ -69,7 +69,7 @@ fn a_stroke_with_a_line_becomes_a_surface_that_renders() {
 }
 
 #[test]
-fn three_axes_and_columns_of_speed_and_force_are_folded_and_tell_friction() {
+fn three_axes_and_columns_are_folded_and_give_friction() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let vibration = vibration(5.0, 90.0);

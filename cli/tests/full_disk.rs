@@ -24,7 +24,7 @@ fn seeded(scene: &Scene, name: &str) {
 }
 
 #[test]
-fn a_verb_without_room_on_the_disk_says_so_and_leaves_nothing_behind() {
+fn a_verb_without_disk_space_says_so_and_leaves_nothing() {
     let scene = Scene::new();
     for name in ["wav/tone.wav", "obj/brick.obj", "gltf/draft.gltf", "gltf/plain.gltf", "batch/strokes.toml"]
     {

@@ -161,7 +161,7 @@ fn odd_wav(samples: &[f64]) -> Vec<u8> {
 }
 
 #[test]
-fn wav_files_are_read_as_recordings_are_and_one_that_is_cut_off_is_said_to_be() {
+fn wav_files_are_read_and_truncated_ones_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let samples: Vec<f64> = (0..16_000).map(|n| 0.4 * (TAU * 120.0 * f64::from(n) / 8000.0).sin()).collect();
@@ -176,7 +176,7 @@ fn wav_files_are_read_as_recordings_are_and_one_that_is_cut_off_is_said_to_be() 
 }
 
 #[test]
-fn what_is_no_vibration_is_refused_in_one_line_and_leaves_no_file() {
+fn what_is_no_vibration_is_refused_without_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_wav(&folder.join("empty.wav"), 8000, &[&|_| 0.0], 0.0);

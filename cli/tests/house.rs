@@ -36,7 +36,7 @@ fn a_bus_a_channel_and_only_the_body_that_is_touched_sounds() {
 }
 
 #[test]
-fn a_pen_that_is_held_rings_on_its_own_bus_with_the_opposite_sign_in_strokes_and_in_strikes() {
+fn a_held_pen_rings_on_its_own_bus_with_opposite_sign() {
     let scene = with("");
     let held = stroke(1, 0.5).replacen(
         "\"actuator\":0",
@@ -66,7 +66,7 @@ fn a_contact_without_an_actuator_is_heard_and_not_felt() {
 }
 
 #[test]
-fn names_that_are_not_there_and_tables_that_contradict_each_other_are_refused() {
+fn missing_names_and_contradicting_tables_are_refused() {
     let scene = with("");
     let log = |from: &str, to: &str| scene.write("stroke.jsonl", stroke(1, 0.5).replacen(from, to, 1));
     log("\"actuator\":0", "\"actuator\":0,\"probe\":\"broom\"");

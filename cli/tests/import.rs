@@ -55,7 +55,7 @@ fn import_and_render(folder: &Path, document: &str) -> Value {
 }
 
 #[test]
-fn a_body_and_two_surfaces_render_and_a_mode_keeps_its_frequency_and_decay() {
+fn a_body_with_two_surfaces_renders_with_its_frequency_and_decay() {
     let folder = tempfile::tempdir().unwrap();
     let (document, bytes) = document();
     put(folder.path(), &document, &bytes);
@@ -201,7 +201,7 @@ fn textured_box(node: &Value, transform: &Value) -> (Value, Vec<u8>) {
 }
 
 #[test]
-fn a_document_without_the_draft_gives_a_body_and_a_surface_in_true_metres() {
+fn a_document_without_the_draft_gives_body_and_surface_in_metres() {
     let plain = json!({"children": [1]});
     let halved = json!({"children": [1], "scale": [0.5, 0.5, 0.5]});
     let matrix = json!({"children": [1], "matrix": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 1, 1, 1]});

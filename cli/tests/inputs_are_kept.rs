@@ -171,7 +171,7 @@ fn everything(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn an_output_that_is_an_input_is_refused_by_every_verb_and_by_whatever_path() {
+fn an_output_that_is_an_input_is_refused_by_every_verb() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fill(at);
@@ -209,7 +209,7 @@ fn an_output_that_is_an_input_is_refused_by_every_verb_and_by_whatever_path() {
 }
 
 #[test]
-fn an_output_that_gets_its_name_from_a_stem_or_a_folder_is_never_an_input() {
+fn an_output_named_by_a_stem_or_folder_is_never_an_input() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fill(at);

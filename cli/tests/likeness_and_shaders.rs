@@ -64,7 +64,7 @@ fn a_collection_is_ordered_by_likeness_of_feel() {
 }
 
 #[test]
-fn the_observer_tells_materials_apart_and_not_what_lies_below_people_s_thresholds() {
+fn the_observer_tells_materials_apart_above_peoples_thresholds_only() {
     let scene = with_maps(&[("a.png", fractal(128, 2.6, 1.0, 9)), ("b.png", ground(128))]);
     let compare = |relief: &str, observer: &[&str]| {
         let all =
@@ -143,7 +143,7 @@ fn every_solid_is_a_shader_that_is_valid_and_needs_no_uniforms() {
 }
 
 #[test]
-fn a_grating_of_a_scene_is_felt_at_its_pitch_and_its_words_are_checked() {
+fn a_grating_of_a_scene_is_felt_at_its_pitch() {
     let scene = Scene::new();
     let with = |solid: &str| {
         let toml = support::TOML
@@ -174,7 +174,7 @@ fn a_grating_of_a_scene_is_felt_at_its_pitch_and_its_words_are_checked() {
 }
 
 #[test]
-fn a_table_of_the_sources_is_computed_again_and_put_beside_what_is_printed() {
+fn a_table_of_the_sources_stands_beside_what_is_printed() {
     let scene = Scene::new();
     let (status, list, _) = told(&asperity(scene.folder.path(), &["evidence", "--list"]));
     assert!(status == 0 && list.contains("004-table-6-1"), "{list}");

@@ -95,7 +95,7 @@ fn scene_with(place: Place, key: &str, value: f64) -> String {
 }
 
 #[test]
-fn what_lies_beyond_a_limit_is_refused_with_its_key_and_the_range() {
+fn what_lies_beyond_a_limit_is_refused_with_the_range() {
     let scene = Scene::new();
     for (place, key, range) in ALL {
         let below = if range.above { range.low } else { range.low - 1e-3 * range.low.abs().max(1e-9) };

@@ -79,7 +79,7 @@ fn voices_that_were_stolen_are_told() {
 }
 
 #[test]
-fn a_force_in_millinewtons_a_time_that_stands_and_a_blow_at_every_step_are_told() {
+fn wrong_force_units_standing_times_and_constant_blows_are_reported() {
     let heavy = stroke(1, 0.5).replace("\"normal_force_n\":0.6", "\"normal_force_n\":600");
     assert_says(
         &said(TOML, &heavy),
@@ -133,7 +133,7 @@ fn a_haptic_channel_beyond_full_scale_is_told_and_the_remedy_works() {
 }
 
 #[test]
-fn a_key_that_the_log_does_not_know_is_refused_and_one_that_is_read_past_is_told() {
+fn an_unknown_log_key_is_refused_and_an_unused_one_reported() {
     let scene = Scene::new();
     scene.write("stroke.jsonl", stroke(1, 0.2).replacen("velocity_m_s", "velocity", 1));
     assert_refused(
@@ -145,14 +145,14 @@ fn a_key_that_the_log_does_not_know_is_refused_and_one_that_is_read_past_is_told
 }
 
 #[test]
-fn a_recording_in_the_place_of_modes_is_answered_with_the_way_to_them() {
+fn a_recording_in_place_of_modes_is_answered_with_fit() {
     let scene = Scene::new();
     scene.write("bar.modes.json", [b"RIFF\xff\xfe\x80".as_slice(), MODES.as_bytes()].concat());
     assert_refused(&scene.render(&[]), &["bar.modes.json", "asperity fit"]);
 }
 
 #[test]
-fn sand_whose_cells_are_wider_than_the_tool_is_refused_with_the_cells_it_needs() {
+fn sand_too_coarse_for_its_tool_is_refused_with_the_cells_needed() {
     let scene = Scene::new();
     let sand = "sand = { cells = 16, tool_radius_m = 0.002 }\nwidth_m = 0.1";
     scene.write("scene.toml", TOML.replace("width_m = 0.1", sand).replace("roughness = 0.7\n", ""));
@@ -199,7 +199,7 @@ fn each_output_that_is_silent_is_told_with_its_own_reason() {
 }
 
 #[test]
-fn an_impact_that_is_felt_and_sand_that_answers_a_depth_are_not_called_silent() {
+fn felt_impacts_and_answering_sand_are_not_called_silent() {
     let felt = impact(0.1).replace("\"striker\"", "\"actuator\":0,\"striker\"");
     let told = said(TOML, &felt);
     assert!(!told.contains("haptic"), "{told}");
@@ -236,7 +236,7 @@ fn a_blow_told_after_the_rebound_is_told_to_have_no_speed() {
 }
 
 #[test]
-fn a_stock_body_that_no_ear_hears_is_told_so_and_a_huge_one_is_no_mass_that_nobody_wrote() {
+fn inaudible_stock_bodies_are_reported_and_huge_ones_need_no_mass() {
     let stock = |keys: &str| TOML.replace("modes = \"bar.modes.json\"\nmaterial = \"steel\"", keys);
     let small = stock("stock = \"bar\"\nsize_m = 0.002\nmaterial = \"steel\"");
     assert_ne!(small, TOML);

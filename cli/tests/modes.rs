@@ -13,7 +13,7 @@ const BAR: &str = "v 0 0 0\nv 0.1 0 0\nv 0.1 0.02 0\nv 0 0.02 0\nv 0 0 0.01\nv 0
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 #[test]
-fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
+fn a_mesh_becomes_a_body_that_can_be_struck_anywhere() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("bar.obj"), BAR).unwrap();
@@ -56,7 +56,7 @@ fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
 }
 
 #[test]
-fn shapes_beside_the_modes_file_are_the_shapes_within_it_and_a_scene_renders_the_same_bits() {
+fn shapes_beside_the_modes_file_equal_shapes_within_it() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("bar.obj"), BAR).unwrap();
@@ -107,7 +107,7 @@ fn shapes_beside_the_modes_file_are_the_shapes_within_it_and_a_scene_renders_the
 }
 
 #[test]
-fn with_radiation_levels_are_pascals_and_low_bending_modes_are_far_below_a_breathing_body() {
+fn radiated_levels_are_pascals_and_low_bending_modes_are_weak() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("bar.obj"), BAR).unwrap();
@@ -200,7 +200,7 @@ fn what_is_no_body_is_one_line_and_no_file() {
 
 /// Was an unknown key, though a scene may name a mesh.
 #[test]
-fn a_scene_whose_body_is_a_mesh_sounds_as_with_its_modes_file() {
+fn a_scene_with_a_mesh_sounds_as_with_its_modes_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("bar.obj"), BAR).unwrap();

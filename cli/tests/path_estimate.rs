@@ -226,7 +226,7 @@ fn of_the_best(stroke: &Stroke, reports: &[Report], reported: bool) -> f64 {
 }
 
 #[test]
-fn a_band_limited_path_is_near_the_best_linear_estimator_at_the_lag_of_dead_reckoning() {
+fn a_band_limited_path_is_near_the_best_linear_estimator() {
     let lag_s = |mode| TrajectoryDesign::new(mode, 30.0, RATE_HZ, [f64::INFINITY; 2]).unwrap().lag_s();
     assert_eq!(lag_s(PathMode::BandLimited), lag_s(PathMode::Extrapolate));
     let mut wrong = Vec::new();

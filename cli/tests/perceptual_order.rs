@@ -50,7 +50,7 @@ fn excitation(modes: &[Mode], which: &[usize], erb: f64, time_s: f64) -> f64 {
 }
 
 #[test]
-fn dense_tables_need_a_fraction_of_their_modes_and_excite_the_ear_within_a_decibel() {
+fn dense_tables_need_a_fraction_of_their_modes() {
     for (name, at_least) in
         [("tdw_ceramic_0_mm", 4.0), ("tdw_wood_medium_0_mm", 1.5), ("tdw_stone_1_mm", 1.0)]
     {
@@ -177,7 +177,7 @@ fn heard_at(modes: &[Mode], level: usize) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn what_the_engine_renders_at_its_first_level_of_load_excites_the_ear_within_a_decibel() {
+fn the_first_level_of_load_stays_within_a_decibel_of_excitation() {
     for (name, at_least) in
         [("tdw_ceramic_0_mm", 4.0), ("tdw_wood_medium_0_mm", 1.5), ("tdw_stone_1_mm", 1.0)]
     {

@@ -64,7 +64,7 @@ fn pictures_that_are_none_are_refused_by_name_and_leave_nothing() {
 
 /// A blank reference took a minute, and blank pictures gave flat surfaces without a word.
 #[test]
-fn a_blank_reference_and_a_blank_normal_map_are_told_to_be_flat() {
+fn a_blank_reference_and_a_blank_normal_map_are_reported_flat() {
     let scene = with_maps(&[("good.png", ground(64))]);
     for (name, grey) in [("white.png", 1.0), ("grey.png", 0.5), ("black.png", 0.0)] {
         save_gray16(scene.path(name), &Raster::constant(64, 64, grey)).unwrap();

@@ -161,7 +161,7 @@ fn forces_come_once_a_millisecond_and_press_out_of_the_surface() {
 }
 
 #[test]
-fn forces_come_at_the_rate_that_is_asked_for_and_mean_the_same() {
+fn forces_come_at_the_wanted_rate_with_the_same_mean() {
     let scene = Scene::new();
     let rows = |options: &[&str]| -> Vec<Vec<f64>> {
         scene.report(options);

@@ -242,7 +242,7 @@ fn forgets(case: &str, seed: u64) -> bool {
 }
 
 #[test]
-fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independent_integration() {
+fn stated_errors_hold_within_a_factor_of_two() {
     let mut wrong = Vec::new();
     for case in CASES {
         let scene = format!("{case}.toml");
@@ -334,7 +334,7 @@ fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
 }
 
 #[test]
-fn sixty_reports_a_second_leave_gratings_of_2_mm_and_more_their_waveform_and_a_rough_plate_its_levels() {
+fn sixty_reports_a_second_keep_coarse_gratings_and_rough_levels() {
     let strokes = report().1["from_reports"].as_array().unwrap();
     for stroke in strokes {
         println!("{stroke}");
@@ -351,7 +351,7 @@ fn sixty_reports_a_second_leave_gratings_of_2_mm_and_more_their_waveform_and_a_r
 }
 
 #[test]
-fn every_choice_has_its_errors_on_the_named_cases_in_all_that_it_reaches() {
+fn every_choice_has_its_errors_on_the_named_cases() {
     let contact = ["displacement", "contact_force", "output"].as_slice();
     for (axis, fields, some) in [
         ("integrator", contact, None),
@@ -389,7 +389,7 @@ fn every_choice_has_its_errors_on_the_named_cases_in_all_that_it_reaches() {
 }
 
 #[test]
-fn more_inner_samples_err_less_and_the_finer_way_to_read_a_map_wins() {
+fn more_inner_samples_err_less_and_the_finer_map_reading_wins() {
     let means = |axis| -> Vec<f64> { rows(axis).iter().map(|row| number(&row["geometric_mean"])).collect() };
     let inner = means("oversampling");
     assert!(inner.windows(2).all(|pair| pair[1] < 0.7 * pair[0]), "{inner:?}");
@@ -398,7 +398,7 @@ fn more_inner_samples_err_less_and_the_finer_way_to_read_a_map_wins() {
 }
 
 #[test]
-fn every_level_of_load_saves_and_tells_what_the_ear_and_the_finger_miss() {
+fn every_level_of_load_saves_and_states_its_losses() {
     let levels = report().1["load"].as_array().unwrap();
     assert_eq!(levels.len(), 6);
     for level in levels {

@@ -41,7 +41,7 @@ fn map(path: &Path) {
 }
 
 #[test]
-fn one_command_makes_ten_hits_that_differ_and_the_same_seed_makes_them_again() {
+fn one_command_makes_ten_differing_hits_that_a_seed_repeats() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let arguments = ["strike", "bowl", "-o", "hits", "--takes", "10", "--json"];
@@ -67,7 +67,7 @@ fn one_command_makes_ten_hits_that_differ_and_the_same_seed_makes_them_again() {
 }
 
 #[test]
-fn render_turns_the_scene_and_the_log_beside_a_sound_into_the_same_samples() {
+fn render_repeats_a_sound_from_its_scene_and_log() {
     let scene = Scene::new();
     let folder = scene.folder.path();
     map(&folder.join("map.pgm"));
@@ -100,7 +100,7 @@ fn render_turns_the_scene_and_the_log_beside_a_sound_into_the_same_samples() {
 }
 
 #[test]
-fn a_sound_begins_with_the_blow_and_ends_where_it_has_died_away() {
+fn a_sound_begins_with_the_blow_and_ends_with_its_decay() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let report =
@@ -137,7 +137,7 @@ fn a_loop_follows_itself_without_a_step() {
 }
 
 #[test]
-fn a_photograph_is_stroked_in_one_command_that_says_how_wide_it_took_it() {
+fn a_photograph_is_stroked_in_one_command_with_its_width_stated() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let pixels: Vec<u8> = (0..96 * 96)
@@ -182,7 +182,7 @@ fn a_clipped_recording_that_is_struck_is_said_to_be_clipped() {
 }
 
 #[test]
-fn what_cannot_be_struck_or_stroked_names_the_verb_that_helps_and_leaves_no_folder() {
+fn unplayable_things_name_the_helping_verb_and_leave_no_folder() {
     let scene = Scene::new();
     let folder = scene.folder.path();
     map(&folder.join("map.pgm"));

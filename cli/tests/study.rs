@@ -111,7 +111,7 @@ fn a_study_that_cannot_be_asked_is_refused_in_one_line() {
 }
 
 #[test]
-fn a_confusion_matrix_its_intervals_and_the_source_s_figure_come_from_answer_files() {
+fn a_confusion_matrix_and_its_intervals_come_from_answer_files() {
     let folder = tempfile::tempdir().unwrap();
     let plates = ["matte-shiny", "shiny-matte", "ridge", "bumps", "sine", "sawtooth"];
     for person in 0..8 {

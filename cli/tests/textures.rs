@@ -59,7 +59,7 @@ fn slopes_of_bumps(x: f64, y: f64) -> [f64; 2] {
 }
 
 #[test]
-fn a_metamer_is_as_large_as_the_original_and_as_rough_as_the_reference_in_every_band() {
+fn a_metamer_has_the_originals_size_and_the_references_roughness() {
     let scene = with_maps(&[("look.png", wood(96)), ("feel.png", ground(128))]);
     let made = report(&scene, &["metamer", "look.png", "feel.png", "-o", "both.png", "--bands", "3"]);
     let bands = made["bands"].as_array().unwrap();
@@ -84,7 +84,7 @@ fn with_a_full_range_reference() -> Scene {
 }
 
 #[test]
-fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_reference_s_range() {
+fn distances_are_those_of_the_file_for_any_method() {
     let scene = with_a_full_range_reference();
     let reference = grey(&scene, "feel.png");
     for more in [&[][..], &["--method", "single-pass"], &["--method", "spectrum"], &["--borrow", "0"]] {
@@ -158,7 +158,7 @@ fn solid(bytes: &[u8]) -> (f64, [f64; 3], bool) {
 }
 
 #[test]
-fn a_metamer_is_an_object_of_the_size_told_and_coarse_texels_are_warned_of() {
+fn a_metamer_has_the_stated_size_and_coarse_texels_warn() {
     let scene = with_a_full_range_reference();
     let print = ["metamer", "look.png", "feel.png", "-o", "both.png", "--bands", "3", "--stl", "both.stl"];
     for (width_mm, coarse) in [("20", false), ("64", true)] {
@@ -185,7 +185,7 @@ fn a_metamer_is_an_object_of_the_size_told_and_coarse_texels_are_warned_of() {
 }
 
 #[test]
-fn a_height_map_is_a_thing_to_hold_of_the_size_told_in_either_format() {
+fn a_height_map_becomes_a_solid_of_its_size_in_either_format() {
     let rough = |x: usize, y: usize| 0.2 + 0.6 * (((x * 37 + y * 91) % 53) as f64 / 52.0);
     let scene = with_maps(&[("rough.png", Raster::from_fn(24, 16, rough))]);
     let sizes = ["--relief-mm", "1.5", "--width-mm", "30", "--base-mm", "3"];
@@ -326,7 +326,7 @@ fn a_photograph_is_a_rendered_stroke_in_two_commands() {
 }
 
 #[test]
-fn maps_without_relief_and_of_one_texel_s_height_are_no_reason_to_fail() {
+fn maps_without_relief_and_of_one_height_are_no_failure() {
     let flat = || Raster::constant(64, 64, 0.5);
     let step = Raster::from_fn(64, 64, |x, _| if x < 32 { 0.0 } else { 1.0 });
     let scene = with_maps(&[("flat.png", flat()), ("other.png", flat()), ("step.png", step)]);

@@ -253,7 +253,7 @@ fn sand_that_gives_way() {
 }
 
 #[test]
-fn after_a_hitch_of_the_game_the_traced_finger_neither_jumps_nor_races() {
+fn after_a_hitch_the_traced_finger_neither_jumps_nor_races() {
     for hitch_s in [0.04, 0.1, 0.2] {
         for velocity in [true, false] {
             let scene = Scene::new();

@@ -74,7 +74,7 @@ fn help_and_version_go_to_stdout() {
 }
 
 #[test]
-fn a_number_below_0_is_answered_with_the_range_and_not_with_dashes() {
+fn a_number_below_0_is_answered_with_the_range() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, part) in [
         (&["strike", "bar", "-o", "x", "--speeds", "-1"][..], "must be a number above 0"),

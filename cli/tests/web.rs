@@ -8,7 +8,7 @@ mod support;
 use support::{Scene, asperity, told};
 
 #[test]
-fn a_program_without_the_page_says_how_to_build_one_with_it_and_writes_nothing() {
+fn a_program_without_the_page_names_the_build_with_it() {
     let scene = Scene::new();
     for arguments in [&["web"][..], &["web", "--open"], &["web", "-o", "page"]] {
         let (status, out, err) = told(&asperity(scene.folder.path(), arguments));

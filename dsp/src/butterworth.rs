@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_state_settled_on_a_ramp_gives_the_ramp_one_group_delay_late_from_the_first_sample() {
+    fn a_state_settled_on_a_ramp_lags_by_one_group_delay() {
         let (rate, slope) = (44_100.0, 0.1);
         let filter = Butterworth::new(30.0, rate).unwrap();
         let mut state = State::settled_on_ramp(&filter, 0.5, slope / rate);

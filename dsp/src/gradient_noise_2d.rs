@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn its_variance_is_the_one_of_the_equation_and_its_mean_is_zero() {
+    fn variance_is_that_of_the_equation_and_mean_is_zero() {
         let (mut mean, mut square, mut count) = (0.0, 0.0, 0.0);
         for n in 0..200_000 {
             let value = at(f64::from(n) * 0.737, f64::from(n % 1013) * 1.371, 77);

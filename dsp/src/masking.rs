@@ -250,7 +250,7 @@ mod tests {
 
     /// The equations of the module's head, pair by pair in decibels, of seeded bodies.
     #[test]
-    fn every_margin_is_that_of_the_equations_among_the_modes_that_are_left() {
+    fn every_margin_is_that_of_the_equations_of_remaining_modes() {
         for seed in 1..=20 {
             let mut rng = Rng::new(seed);
             let modes: Vec<Mode> = (0..60)

@@ -174,7 +174,7 @@ mod tests {
     const RATE_HZ: f64 = 44_100.0;
 
     #[test]
-    fn a_blow_gives_the_pad_its_impulse_and_the_hand_brings_everything_back() {
+    fn a_blow_gives_the_pad_its_impulse_and_the_hand_returns_it() {
         let design = Mobility::new(&Probe::default(), RATE_HZ).unwrap();
         let mut state = MobilityState::default();
         // 1e-6 N·s within one sample: v = J / m_s, less what spring and damper take in that time.

@@ -180,7 +180,7 @@ mod tests {
         Rolling { radius_m: 8e-3, normal_force_n: 1.0, modulus_pa: 7e10, rms_at_1mm_m: 9e-6, alpha: 1.75 };
 
     #[test]
-    fn a_wave_of_the_limit_is_followed_by_half_its_power_whatever_the_speed() {
+    fn a_wave_of_the_limit_is_followed_by_half_its_power() {
         let [wavelength_m, _] = MARBLE.wavelengths_m();
         for speed_m_s in [0.03, 0.2, 1.0] {
             let filter = RollingFilter::new(speed_m_s, wavelength_m, RATE_HZ);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_the_speeds_it_stays_between_what_it_has_ridden_and_numbers_stay_numbers() {
+    fn friction_stays_within_what_it_has_ridden_at_any_speed() {
         let mut rng = Rng::new(11);
         let mut state = RollingState::at(0.5);
         for _ in 0..4000 {
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_force_is_that_of_the_whole_mass_and_a_fast_one_is_the_patch_s() {
+    fn a_slow_force_meets_the_mass_and_a_fast_one_the_patch() {
         let force = RollingForce::new((0.5, 1e-3), (20.0, 50.0), RATE_HZ);
         let gain = |frequency_hz: f64| {
             let (mut state, mut re, mut im) = (RollingForceState::default(), 0.0, 0.0);

@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_device_cannot_play_is_played_at_the_end_of_its_range_and_felt_as_much() {
+    fn unplayable_frequencies_move_to_the_devices_range_and_strength_stays() {
         for (frequency_hz, played_hz) in [(30.0, 55.0), (300.0, 200.0)] {
             let all = points(QUEST, 44_100.0, sine(frequency_hz, 0.1, 44_100.0));
             let mean = all[50..].iter().map(|p| p.amplitude).sum::<f64>() / 150.0;

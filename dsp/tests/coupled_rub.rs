@@ -161,7 +161,7 @@ const INTEGRATED: [[f64; 9]; 2] = [
 ];
 
 #[test]
-fn a_smooth_curve_in_a_bank_agrees_with_an_integrator_of_another_hand() {
+fn a_smooth_curve_in_a_bank_agrees_with_another_integrator() {
     for [frequency_hz, decay_per_s, mass_kg, normal_force_n, sweep_m_s, mu_static, mu_kinetic, slip, exact] in
         INTEGRATED
     {
@@ -188,7 +188,7 @@ fn a_smooth_curve_in_a_bank_agrees_with_an_integrator_of_another_hand() {
 }
 
 #[test]
-fn a_million_random_steps_in_a_bank_never_take_energy_from_the_friction() {
+fn a_million_random_steps_take_no_energy_from_the_friction() {
     let mut rng = Rng::new(815);
     for rate_hz in [44_100.0, 192_000.0] {
         let (modes, mut plain) = many(40, rate_hz);
@@ -260,7 +260,7 @@ fn any_cut_into_blocks_rubs_the_same_bits() {
 }
 
 #[test]
-fn modes_above_half_of_the_rate_do_not_yield_and_impossible_ones_are_refused() {
+fn modes_above_half_the_rate_do_not_yield() {
     let mut answer = Answer::RIGID;
     let mut add = |mode: Mode| answer.add_modes(Level::detect(), &[(mode, 1.0)], 44_100.0);
     add(mode(30_000.0, 1.0)).unwrap();
@@ -273,7 +273,7 @@ fn modes_above_half_of_the_rate_do_not_yield_and_impossible_ones_are_refused() {
 }
 
 #[test]
-fn what_a_bank_says_ahead_is_what_another_bank_of_its_modes_sounds_like_afterwards() {
+fn a_banks_forecast_is_what_its_modes_sound_like() {
     let mut rng = Rng::new(17);
     for level in Level::available() {
         for (count, rate_hz) in [(3, 44_100.0), (50, 22_050.0), (200, 192_000.0)] {

@@ -44,7 +44,7 @@ fn reference(noise: &GradientNoise3d, p: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn noise_is_exactly_zero_at_lattice_points_and_slopes_as_the_lattice_gradient() {
+fn noise_is_zero_at_lattice_points_and_slopes_as_the_gradient() {
     let noise = GradientNoise3d::new(3);
     let mut seen = std::collections::BTreeMap::new();
     for n in 0..4096_i32 {
@@ -157,7 +157,7 @@ fn density(signal: &[f64], per_cell: f64, cycles_per_cell: f64) -> f64 {
 }
 
 #[test]
-fn a_traverse_has_its_half_power_edge_at_0_59_cycles_per_cell() {
+fn a_traverse_has_its_half_power_edge_at_0_59_cycles() {
     let per_cell = 8.0;
     let mut spectrum = [0.0_f64; 120];
     for stroke in 0..48 {
@@ -220,7 +220,7 @@ fn samples_of_a_path_have_the_numbers_of_single_points() {
 /// because clocks differ, and twice as many, because gathers differ too and a neighbour may share
 /// the core. It has five seconds to show it.
 #[test]
-fn a_point_takes_104_cycles_at_most_and_a_sample_of_an_avx2_batch_28() {
+fn a_point_takes_104_cycles_and_a_batched_sample_28() {
     let (false, Some(level)) = (cfg!(debug_assertions), Level::find(Isa::Avx2)) else {
         println!("skipped: only optimised builds with AVX2 have a bar");
         return;

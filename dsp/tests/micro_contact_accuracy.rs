@@ -85,7 +85,7 @@ fn errors(
 }
 
 #[test]
-fn errors_stay_below_the_bars_on_the_suite_and_on_profiles_nobody_tuned_on() {
+fn errors_stay_below_the_bars_on_unseen_profiles() {
     let (of_suite, of_held_out) = references().split_at(SUITE.len());
     for (name, suite, references) in [("suite", SUITE, of_suite), ("held out", HELD_OUT, of_held_out)] {
         let errors = errors(&suite, references, RATE_HZ, &Integrator::ALL);
@@ -146,7 +146,7 @@ fn the_reference_agrees_with_scipy() {
 }
 
 #[test]
-fn collisions_on_a_sine_at_1_m_s_are_all_found_and_timed_to_a_microsecond() {
+fn collisions_on_a_fast_sine_are_found_to_a_microsecond() {
     let profile = &SUITE[1];
     let times = |rows: &[ContactSample], rate_hz: f64| -> Vec<f64> {
         let touch = |(n, row): (usize, &ContactSample)| {
@@ -212,7 +212,7 @@ fn over_quick_waves(times: usize, known: Known, cuts: usize) -> Vec<ContactSampl
 }
 
 #[test]
-fn ground_known_midway_is_followed_a_hundred_times_as_well_where_waves_pass_in_a_few_samples() {
+fn ground_known_midway_is_followed_a_hundred_times_as_well() {
     let fine = over_quick_waves(OVERSAMPLING, Known::Nothing, 1000);
     let reference: Vec<_> = fine.iter().copied().step_by(OVERSAMPLING).collect();
     let [plain, bent, halved] = [Known::Nothing, Known::Midway, Known::Quarters].map(|known| {
@@ -226,7 +226,7 @@ fn ground_known_midway_is_followed_a_hundred_times_as_well_where_waves_pass_in_a
 }
 
 #[test]
-fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
+fn bends_give_the_same_rows_in_any_blocks() {
     for known in [Known::Midway, Known::Quarters] {
         let whole = over_quick_waves(1, known, 8000);
         for cuts in [1, 7, 63, 200] {

@@ -33,7 +33,7 @@ fn lone_mass() -> Probe {
 }
 
 #[test]
-fn a_resting_finger_stays_where_the_springs_hold_it_to_the_last_digits() {
+fn a_resting_finger_stays_where_the_springs_hold_it() {
     for (rate_hz, level) in
         RATES_HZ.into_iter().flat_map(|rate| Level::available().map(move |level| (rate, level)))
     {
@@ -114,7 +114,7 @@ fn a_landing_is_reported_once_with_its_speed() {
 }
 
 #[test]
-fn an_unloaded_pad_rings_down_as_two_masses_on_a_spring_and_a_damper() {
+fn an_unloaded_pad_rings_down_as_two_masses() {
     // Pressed hard, then released: skin and finger fly up together, and their distance rings.
     let probe = Probe { pad_damping_n_s_m: 0.05, leash_m: 0.05, ..linear() };
     let mass = 1.0 / (1.0 / probe.pad_mass_kg + 1.0 / probe.finger_mass_kg);

@@ -76,7 +76,7 @@ fn every_stiffness_mass_and_rate_stays_bounded_on_a_rough_surface() {
 }
 
 #[test]
-fn a_pad_pressed_far_into_soft_ground_is_not_taken_for_a_lost_one() {
+fn a_pad_pressed_far_into_soft_ground_is_not_a_lost_one() {
     for integrator in Integrator::ALL {
         let probe = Probe { contact_stiffness_n_m: 1e3, ..Probe::default() };
         let design = MicroContact::new(&probe, integrator, 44_100.0).unwrap();
@@ -92,7 +92,7 @@ fn a_pad_pressed_far_into_soft_ground_is_not_taken_for_a_lost_one() {
 }
 
 #[test]
-fn random_probes_on_random_surfaces_never_gain_energy_from_a_surface_at_rest() {
+fn random_probes_gain_no_energy_from_a_surface_at_rest() {
     let mut rng = Rng::new(2);
     let mut range = |low: f64, high: f64| low * (high / low).powf(rng.uniform());
     for case in 0..1500 {
@@ -231,7 +231,7 @@ fn the_portable_kernels_agree_with_the_wide_ones() {
 }
 
 #[test]
-fn a_contact_that_came_to_rest_is_not_slower_than_a_busy_one() {
+fn a_resting_contact_costs_no_more_than_a_busy_one() {
     for integrator in Integrator::ALL {
         let design = MicroContact::new(&Probe::default(), integrator, 44_100.0).unwrap();
         let busy: Vec<f64> = (0..44_100).map(|n| 5e-5 * (f64::from(n) * 0.02).sin()).collect();

@@ -85,7 +85,7 @@ fn line(values: &[f64], spacing: f64) -> (f64, f64) {
 // Bar of the project: ±0.1 dB per octave of −3.01 α over 2.5 decades (here 12.5 Hz – 4 kHz at 0.1
 // m/s). The levels come from dsp/tests/independent/noise_spectrum.py.
 #[test]
-fn the_spectrum_falls_by_3_db_alpha_per_octave_over_two_and_a_half_decades() {
+fn the_spectrum_falls_by_3_db_alpha_per_octave() {
     let figures = [
         (0.0, 2.5, [5.73, -5.29, -15.40, -25.68]),
         (1.0 / 3.0, 2.0, [2.25, -5.09, -11.76, -18.68]),
@@ -133,7 +133,7 @@ fn the_slope_holds_at_every_sample_rate() {
 }
 
 #[test]
-fn the_octave_about_one_millimetre_has_the_rms_asked_for_whatever_the_roughness() {
+fn the_octave_about_one_millimetre_has_the_wanted_rms() {
     for roughness in [0.0, 0.25, 0.5, 0.75, 1.0] {
         let power = mean_power(roughness, 0.1, 1 << 15, 48);
         let level = band_db(&power, 100.0 / 2f64.sqrt(), 100.0 * 2f64.sqrt());
@@ -144,7 +144,7 @@ fn the_octave_about_one_millimetre_has_the_rms_asked_for_whatever_the_roughness(
 
 // Bar of the project: ±0.1 dB of 6.02 (α − 1).
 #[test]
-fn four_times_the_speed_raises_the_level_by_6_db_times_alpha_minus_1() {
+fn four_times_the_speed_raises_the_level_by_alphas_law() {
     for (roughness, alpha) in [(0.0, 2.5), (1.0 / 3.0, 2.0), (2.0 / 3.0, 1.5), (1.0, 1.0)] {
         let (slow, fast) =
             (mean_power(roughness, 0.1, 1 << 14, 200), mean_power(roughness, 0.4, 1 << 14, 200));

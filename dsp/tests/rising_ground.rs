@@ -69,7 +69,7 @@ fn a_finger_presses_as_hard_on_a_ramp_as_on_the_flat() {
 }
 
 #[test]
-fn a_rigid_thing_that_leaves_a_rising_ground_is_not_stopped_in_the_world() {
+fn a_rigid_thing_leaving_rising_ground_is_not_stopped() {
     let design =
         MicroContact::new(&tool([20e-3, 0.5], [1e4, 20.0], 1e6), Integrator::ExactEvent, RATE_HZ).unwrap();
     let relief_m = relief(80e-6, 3);

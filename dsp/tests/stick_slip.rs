@@ -73,7 +73,7 @@ fn the_period_is_that_of_the_closed_form() {
 }
 
 #[test]
-fn swept_faster_than_its_spring_can_follow_it_never_sticks_and_slower_it_always_does() {
+fn friction_faster_than_its_spring_never_sticks() {
     // Held in place by μ_k until its amplitude A ω reaches V: sticking begins only below V_c = A ω.
     let (frequency_hz, mass_kg, rate_hz) = (200.0, 0.05, 96_000.0);
     let friction = Friction { mu_static: 0.9, mu_kinetic: 0.4, slip_speed_m_s: 1e-9 };
@@ -160,7 +160,7 @@ const INTEGRATED: [[f64; 9]; 4] = [
 ];
 
 #[test]
-fn it_agrees_with_an_integrator_of_another_making_where_the_curve_is_smooth() {
+fn it_agrees_with_another_integrator_on_smooth_curves() {
     for [frequency_hz, decay_per_s, mass_kg, normal_force_n, sweep_m_s, mu_static, mu_kinetic, slip, exact] in
         INTEGRATED
     {
@@ -190,7 +190,7 @@ fn it_agrees_with_an_integrator_of_another_making_where_the_curve_is_smooth() {
 }
 
 #[test]
-fn impossible_friction_is_refused_and_nothing_that_yields_gives_no_number_that_is_none() {
+fn impossible_friction_is_refused_and_what_cannot_yield_gives_numbers() {
     let good = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.1 };
     assert!(good.checked().is_ok());
     assert_eq!(Friction { mu_kinetic: 0.9, ..good }.checked().unwrap_err().field, "mu_kinetic");

@@ -42,7 +42,7 @@ fn a_parabola_of_force_is_answered_to_rounding() {
 }
 
 #[test]
-fn a_sine_of_friction_moves_the_skin_as_the_two_state_response_says() {
+fn a_sine_of_friction_moves_the_skin_as_two_states_do() {
     let mut worst = f64::NEG_INFINITY;
     for rate_hz in [44_100.0, 48_000.0, 96_000.0, 192_000.0] {
         for normal_force_n in [0.1, 0.5, 1.0, 3.0] {
@@ -69,7 +69,7 @@ fn a_sine_of_friction_moves_the_skin_as_the_two_state_response_says() {
 }
 
 #[test]
-fn a_lasting_force_moves_the_skin_by_force_over_stiffness_which_grows_with_the_normal_force() {
+fn a_lasting_force_moves_the_skin_by_force_over_stiffness() {
     for normal_force_n in [0.05, 0.3, 1.0, 2.7, 20.0] {
         let design = finger(normal_force_n, RATE_HZ);
         let firm = f64::powf(normal_force_n, FORCE_EXPONENT);

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_go_before_contacts_where_they_are_a_tenth_and_with_them_where_they_are_not() {
+    fn modes_go_before_contacts_where_they_cost_a_tenth() {
         let silent = Work { contacts: 10, modes: 0, spared: 0 };
         let contacts: Vec<usize> = stiffness_table(silent).iter().map(|(_, contacts)| *contacts).collect();
         assert_eq!(contacts, [64, 9, 8, 7, 6, 5, 4, 3, 2]);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn four_fingers_on_a_small_body_come_back_after_three_half_seconds_because_no_level_is_empty() {
+    fn four_fingers_on_a_small_body_return_soon() {
         let few = Work { contacts: 4, modes: 100, spared: 40 };
         assert_eq!(stiffness_table(few), [(0, 64), (1, 3), (1, 2), (1, 1)]);
         // One finger, or none on a body whose modes are all heard: nothing can go.
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn late_blocks_of_the_host_cost_nothing_where_the_engine_takes_one_percent() {
+    fn late_blocks_cost_nothing_where_the_engine_takes_one_percent() {
         for late in [1, 3, 8, 15] {
             let easy = |blocks| std::iter::repeat_n(0.01, blocks);
             let reports = easy(100).chain(std::iter::repeat_n(4.0, late)).chain(easy(100));

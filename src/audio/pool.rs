@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn all_jobs_come_home_done_whoever_runs_them_and_however_often_helpers_have_slept() {
+    fn all_jobs_come_home_done_however_often_helpers_slept() {
         for helpers in [0, 1, 2, 7] {
             let mut pool = Pool::new(vec![0; helpers], 16).unwrap();
             let mut room = 0;
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_job_that_panics_panics_where_the_jobs_come_home_and_helpers_end_all_the_same() {
+    fn a_panicking_job_panics_at_home_and_its_helpers_end() {
         let mut pool = Pool::new(vec![0, 0], 16).unwrap();
         let mut failing = jobs(8);
         failing[0].fails = true;

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gain_gets_there_within_a_tenth_of_a_second_without_a_step_and_stays_exactly() {
+    fn a_gain_arrives_within_a_tenth_of_a_second_without_a_step() {
         for rate_hz in [22_050.0, 44_100.0, 192_000.0] {
             let mut gain = Smoothed::new(rate_hz);
             for target in [0.0, 1.0, 3.0] {

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unknown_or_out_of_range_is_refused_by_name_at_any_depth() {
+    fn what_is_unknown_is_refused_by_name_at_any_depth() {
         for (text, parts) in [
             ("sampel_rate_hz = 1", &["unknown field `sampel_rate_hz`", "`sample_rate_hz`"][..]),
             ("[probe]\nweight_kg = 1", &["unknown field `weight_kg`", "`pad_mass_kg`"]),

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_of_another_kind_is_sent_to_the_tool_that_reads_it() {
+    fn a_file_of_another_kind_is_sent_to_its_tool() {
         for (bytes, word) in [
             (&b"RIFF\0\0\0\0WAVEfmt "[..], "`asperity fit`"),
             (b"RIFF\0\0\0\0WEBPVP8 ", "from-photo"),

@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_glb_is_refused_with_what_would_be_right_and_never_panics() {
+    fn a_damaged_glb_is_refused_with_a_remedy_and_never_panics() {
         let bytes = shapes_to_glb(&tetra());
         assert!(shapes_from_glb(&bytes, 3).unwrap_err().contains("must have 12"));
         for cut in 0..bytes.len() {

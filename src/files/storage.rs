@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_no_file_and_what_is_no_text_is_told_so() {
+    fn a_folder_and_a_file_without_text_are_refused_as_such() {
         let folder = std::env::temp_dir();
         assert_eq!(Disk.read(&folder).unwrap_err().kind(), io::ErrorKind::IsADirectory);
         let mut files = Memory::new();

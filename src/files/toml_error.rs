@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slip_in_a_profile_names_its_line_its_key_and_what_would_be_right() {
+    fn a_slip_in_a_profile_names_line_key_and_remedy() {
         for (text, told) in [
             (
                 "label = \"x\"\nbnad_hz = [1, 2]",

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_used_four_thousand_million_times_is_retired_instead_of_named_twice() {
+    fn a_place_used_four_thousand_million_times_is_retired() {
         let mut places = Places::new(2, "bodies");
         places.wear_out(0, u32::MAX - 1);
         let last = places.free().unwrap();

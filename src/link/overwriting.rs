@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_that_is_longer_than_a_port_holds_leaves_its_newest_samples() {
+    fn a_block_longer_than_a_port_leaves_its_newest_samples() {
         let (mut writer, mut reader) = ring(8, 1);
         writer.write(0..21);
         assert_eq!((reader.waiting(), read(&mut reader, 100)), (8, (13..21).collect()));

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_full_ring_hands_back_what_does_not_fit_and_says_how_much_does() {
+    fn a_full_ring_hands_back_what_does_not_fit() {
         let (mut sender, mut receiver) = channel(3);
         assert_eq!((sender.capacity(), sender.free(), receiver.peek()), (3, 3, None));
         assert_eq!([1, 2, 3, 4].map(|item| sender.send(item)), [Ok(()), Ok(()), Ok(()), Err(4)]);

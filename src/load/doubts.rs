@@ -62,7 +62,7 @@ mod tests {
     use crate::files::actuator_profile::ActuatorPreset;
 
     #[test]
-    fn micrometres_and_kilohertz_of_a_device_are_told_and_shipped_profiles_are_not() {
+    fn wrong_units_of_a_device_are_reported_and_shipped_ones_not() {
         for name in ActuatorPreset::names().split(", ") {
             assert_eq!(of_device("", &ActuatorPreset::by_name(name).unwrap().profile), [""; 0], "{name}");
         }

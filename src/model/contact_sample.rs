@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn what_weighs_tonnes_or_outruns_sound_is_held_at_the_limit_in_its_own_direction() {
+    fn tonnes_and_supersonic_speeds_are_held_in_their_direction() {
         let lorry = ContactSample { normal_force_n: 2e5, ..sample() }.sliding([-150.0, 300.0]).slipping(1e6);
         let (held, at_limit) = lorry.held().unwrap();
         assert!(at_limit);

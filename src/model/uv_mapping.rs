@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn round_the_barrel_and_along_it_are_as_long_as_on_the_map() {
+    fn barrel_distances_are_those_of_the_map() {
         let barrel = UvMapping::Cylinder { radius_m: 0.3, span_m: [0.2, 0.5] };
         for about in [0.1f64, 1.0, 2.5, -2.0] {
             let outward = DVec3::new(about.sin(), 0.0, about.cos());
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn down_the_globe_and_along_its_equator_are_as_long_as_on_the_map() {
+    fn globe_distances_are_those_of_the_map() {
         let globe = UvMapping::Sphere { radius_m: 0.5, span_m: [0.25, 0.25] };
         for (about, theta) in [(0.3f64, 1.57f64), (-2.0, 0.9), (3.0, 2.0)] {
             let outward = DVec3::new(about.sin() * theta.sin(), theta.cos(), about.cos() * theta.sin());
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn down_the_side_of_a_crate_whose_top_is_mapped_goes_by_the_normal() {
+    fn a_crates_side_under_a_mapped_top_goes_by_the_normal() {
         let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
         let top = UvTriangle::new(corners, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
         let crate_ = UvMapping::Plane(top);

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_of_the_mesh_finds_its_texture_coordinates_and_its_velocity_the_axes() {
+    fn a_mesh_point_finds_its_texture_coordinates_and_axes() {
         let corners = [[0.1, 0.2], [0.9, 0.3], [0.4, 0.8]];
         let triangle = UvTriangle::new(corners.map(place), corners).unwrap();
         for uv in [[0.1, 0.2], [0.5, 0.4], [2.0, -3.0]] {

@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_changes_nothing_and_a_ball_on_a_ball_of_its_size_halves_the_curvature_s_radius() {
+    fn a_plane_changes_nothing_and_a_ball_on_a_ball_curves_less() {
         assert_eq!(nestling(2e-3, bent(0.0)), 1.0);
         // A crest as sharp as the tip: κ = 2/r, so the area is 2^(−2/3) and the sound 2^(−1/3).
         assert!((nestling(2e-3, bent(-500.0)) - 0.5f64.cbrt()).abs() < 1e-12);

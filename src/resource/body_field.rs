@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn gains_of_a_contact_that_slides_have_no_step_above_minus_sixty_decibels_and_arrive() {
+    fn gains_of_a_sliding_contact_arrive_without_a_step() {
         let model = strip();
         let places = StrikeField::new(model.shapes.clone().unwrap());
         // As the bank is designed: each at its amplitude where it swings most, so that the greatest

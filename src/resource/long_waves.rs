@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn waves_lie_above_the_scale_of_a_map_as_strong_as_it_is_felt() {
+    fn waves_lie_above_a_maps_scale_as_strong_as_felt() {
         let weak = waves(map(1e-3, 1e-6));
         assert!(weak[..5].iter().all(|rms_m| *rms_m > 0.0) && weak[5..] == [0.0; 7], "{weak:?}");
         let strong = waves(map(1e-3, 2e-6));

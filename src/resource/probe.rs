@@ -134,7 +134,7 @@ mod tests {
     use crate::model::probe::probe_by_name;
 
     #[test]
-    fn a_tool_collides_with_its_tip_and_what_is_hard_or_a_point_with_all_of_its_pad() {
+    fn a_tool_collides_with_its_tip_and_a_point_with_its_pad() {
         let of = |name: &str| probe_by_name(name).unwrap();
         // A steel ball of 1.6 mm weighs 0.134 g.
         assert!((colliding_kg(&of("stylus")) - 0.134e-3).abs() < 1e-6);

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_ridden_never_lies_below_the_ground_and_a_plane_stays_a_plane() {
+    fn the_ridden_path_never_lies_below_the_ground() {
         let map = random(40, 40);
         let out = dilated(map.clone(), [1e-4, 1e-4], Wrap::Repeat, 1e-3);
         assert!(out.values.iter().zip(&map.values).all(|(z, h)| z >= h));

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn waves_of_every_length_and_direction_are_felt_as_the_closed_form_says() {
+    fn waves_of_every_length_are_felt_as_the_closed_form() {
         let (mut near, mut worst) = (0.0_f64, 0.0_f64);
         for (u, v) in [(4, 0), (10, 0), (0, 17), (12, 5), (20, 20), (7, 24), (40, 0), (64, 31)] {
             let mut map = waves(u, v);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_only_just_touches_feels_one_place_and_a_slope_stays_itself() {
+    fn a_barely_touching_ball_rides_one_place_and_leaves_a_slope_unchanged() {
         let mut map = waves(10, 0);
         let path = PathBlock {
             position_m: &[[1.1e-3, 5e-3]],
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn the_circle_is_the_ball_s_own_section_and_no_wider_than_the_ball() {
+    fn the_circle_is_the_balls_section_and_no_wider() {
         assert!((footprint_radius_m(5e-3, 1e-3) - 3e-3).abs() < 1e-15);
         assert_eq!((footprint_radius_m(5e-3, 0.0), footprint_radius_m(5e-3, 1.0)), (0.0, 5e-3));
     }

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_marked_is_not_looked_at_but_what_was_never_shown_is() {
+    fn unmarked_stretches_are_skipped_and_unseen_ones_examined() {
         let (picture, mut heights) = picture();
         let mut none = all();
         none.clear();
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_that_comes_late_sees_the_latest_and_is_told_what_it_missed() {
+    fn a_late_reader_sees_the_latest_and_the_number_missed() {
         let (picture, mut heights) = picture();
         let (mut late, mut drawn) = (picture.reader(), vec![vec![0.0; 70]; 40]);
         for n in 0..10 {

@@ -284,7 +284,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_channel_of_a_pixel_is_found_and_alpha_only_where_it_is() {
+    fn every_channel_of_a_pixel_is_found_where_it_is() {
         let pixel = [51, 102, 204, 255];
         let rgba = Picture::new(1, 1, Samples::U8(pixel.to_vec())).unwrap();
         for (channel, stored) in [(Channel::R, 51), (Channel::G, 102), (Channel::B, 204), (Channel::A, 255)] {

@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_material_that_never_repeats_is_the_same_after_a_tile_and_has_no_seam() {
+    fn a_material_that_never_repeats_has_no_seam_after_a_tile() {
         let tile_m = [0.1, 0.07];
         for material in SolidMaterial::SEVEN {
             let noise = || SolidNoise::new(material.parameters(), 3).unwrap();

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_that_tells_rubbish_gets_a_finite_force_and_none_from_what_is_no_number() {
+    fn a_sensor_of_rubbish_gets_a_finite_force() {
         let mut steep =
             SandLaw { exponent_per_m: 1e4, stiffness_n: 1e6, drag_s_per_m: 1e4, ..SandLaw::default() };
         let stone =

@@ -169,7 +169,7 @@ fn a_periodic_surface_has_no_seam() {
 }
 
 #[test]
-fn rms_and_mean_are_as_asked_and_a_seed_names_the_same_surface() {
+fn rms_and_mean_are_as_asked_and_seeds_repeat() {
     let design = BrownianDesign { size: 64, ..BrownianDesign::new(0.4, 2.5e-5, 77) };
     let s = design.surface().unwrap();
     assert!((rms(&s.values) - 2.5e-5).abs() < 1e-15 && s.mean().abs() < 1e-18);

@@ -31,7 +31,7 @@ fn heights(mut source: impl HeightField) -> Vec<f64> {
 }
 
 #[test]
-fn a_sum_is_the_sum_of_its_parts_in_height_slope_and_force() {
+fn a_sum_is_its_parts_in_height_slope_and_force() {
     let (a, b) =
         (heights_and_slopes(solid(SolidMaterial::Wood)), heights_and_slopes(solid(SolidMaterial::Sand)));
     let sum =
@@ -79,7 +79,7 @@ fn heights_and_slopes(mut source: Source) -> Vec<[f64; 3]> {
 }
 
 #[test]
-fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_db() {
+fn a_crossfade_between_sources_has_no_step_above_minus_60_db() {
     let fade = || {
         let mut fade = Crossfade::new(flat(0.0), flat(1e-3));
         assert!(fade.set(&CrossfadeTo(1.0), 700));
@@ -119,7 +119,7 @@ fn a_scale_multiplies_and_changes_without_a_step() {
 }
 
 #[test]
-fn a_mask_chooses_by_place_and_its_slope_is_the_slope_of_what_it_gives() {
+fn a_mask_chooses_by_place_with_the_slope_of_its_result() {
     let stripes = Raster::from_fn(16, 1, |x, _| if x < 8 { 0.0 } else { 1.0 });
     let mask = || -> Source { Box::new(Lattice::new(&stripes, [0.02, 0.0], [0.0, 0.02]).unwrap()) };
     let made = || Mask::new(mask(), flat(1e-3), solid(SolidMaterial::RoughGlass));
@@ -155,7 +155,7 @@ fn a_band_split_of_one_source_with_itself_gives_it_back() {
 }
 
 #[test]
-fn a_band_split_takes_long_waves_from_one_source_and_short_ones_from_the_other() {
+fn a_band_split_takes_long_waves_from_one_source_short_from_another() {
     let wave = |texels: usize, metres: f64| -> Source {
         let cell = Raster::from_fn(texels, 1, |x, _| {
             1e-4 * (std::f64::consts::TAU * (x as f64 + 0.5) / texels as f64).cos()

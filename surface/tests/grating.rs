@@ -76,7 +76,7 @@ fn a_grating_that_the_sample_rate_cannot_carry_leaves_its_mean() {
 }
 
 #[test]
-fn any_split_into_blocks_gives_the_same_bits_also_while_a_grating_becomes_another_one() {
+fn blocks_change_no_bit_while_a_grating_changes() {
     let stroke = Stroke::new([0.01, 0.02], [0.11, -0.05], RATE, 12_000);
     let run = |lengths: &[usize]| {
         let mut source = Grating::new(of(GratingKind::Sine, 0.5)).unwrap();
@@ -107,7 +107,7 @@ fn what_stands_still_on_a_grating_or_a_new_noise_feels_nothing() {
 }
 
 #[test]
-fn new_noises_are_their_definition_along_any_path_and_blocks_do_not_matter() {
+fn new_noises_are_their_definition_along_any_path() {
     for material in SolidMaterial::KINDS {
         let parameters = material.parameters();
         let mut source = SolidNoise::new(parameters, 11).unwrap();

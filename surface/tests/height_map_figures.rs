@@ -148,7 +148,7 @@ fn snr_db(signal: &[f64], radians_per_sample: f64) -> f64 {
 // Bar of the project: velocity SNR ≥ 60 dB on an oblique path over a 16-bit sine of 12.8 texels a
 // period.
 #[test]
-fn an_oblique_stroke_over_a_16_bit_sine_has_a_velocity_snr_above_60_db() {
+fn an_oblique_stroke_on_16_bits_exceeds_60_db_velocity_snr() {
     let sine = Raster::from_fn(1024, 1024, |x, _| {
         let value = 0.5 + 0.5 * (TAU * (x as f64 + 0.5) / 12.8).sin();
         (value * 65_535.0).round() / 65_535.0
@@ -219,7 +219,7 @@ fn any_split_into_blocks_gives_the_same_bits() {
 
 /// Random texels are all wavelengths at once: what is shorter than two footprints must go.
 #[test]
-fn a_stroke_that_gathers_speed_is_blurred_the_same_wherever_it_is_cut() {
+fn an_accelerating_stroke_is_blurred_alike_wherever_it_is_cut() {
     let mut rng = Rng::new(21);
     let texels = Raster::from_fn(50, 31, |_, _| rng.uniform());
     let mut map = HeightMap::new(&texels, EXTENT, Wrap::Repeat).unwrap().with_roughness_map(&texels).unwrap();

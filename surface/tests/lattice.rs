@@ -98,7 +98,7 @@ fn slopes_agree_with_finite_differences() {
 }
 
 #[test]
-fn a_blunt_footprint_smooths_down_to_the_mean_and_blocks_do_not_matter() {
+fn a_blunt_footprint_smooths_to_the_mean_in_any_blocks() {
     let mut cell = random_cell(32, 32, 4);
     cell = cell.map(|v| v + 1e-3);
     let mut lattice = Lattice::new(&cell, T1, T2).unwrap();

@@ -35,7 +35,7 @@ fn is_drawn(sand: &SandSimulation, drawn: &[f32]) -> bool {
 }
 
 #[test]
-fn a_game_that_draws_only_the_tiles_that_changed_shows_the_sand_as_it_is_in_every_frame() {
+fn a_game_drawing_only_changed_tiles_shows_the_sand_as_it_is() {
     let mut sand = bed();
     let mut reader = sand.moving_picture().reader();
     let mut drawn = vec![0.0; SIDE * SIDE];
@@ -86,7 +86,7 @@ fn two_games_draw_the_same_sand_at_their_own_pace() {
 
 /// Frames with and without a game that draws, in turn, on the same sand.
 #[test]
-fn drawing_moving_sand_costs_at_most_2_percent_of_a_frame_s_time() {
+fn drawing_moving_sand_costs_at_most_2_percent_of_a_frame() {
     let (mut shown, mut hidden) = (bed(), bed());
     let mut reader = shown.moving_picture().reader();
     let mut drawn = vec![0.0; SIDE * SIDE];

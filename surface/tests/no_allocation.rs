@@ -112,7 +112,7 @@ fn no_source_allocates_while_it_is_read_touched_and_changed() {
 }
 
 #[test]
-fn sand_does_not_allocate_in_the_audio_half_while_its_simulation_runs_elsewhere() {
+fn sand_allocates_nothing_in_audio_while_simulated_elsewhere() {
     let design = SandDesign { cells: 200, ..SandDesign::default() };
     let (sand, worker) = SandSource::threaded(&design, 1).unwrap();
     let thread = worker.spawn();

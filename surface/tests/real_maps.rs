@@ -232,7 +232,7 @@ fn scratch(name: &str) -> PathBuf {
 }
 
 #[test]
-fn sixteen_bits_go_out_and_come_back_exactly_and_no_stub_is_left() {
+fn sixteen_bits_go_out_and_return_exactly() {
     let folder = scratch("round_trip");
     let raster = Raster::from_fn(37, 21, |x, y| ((x * 1771 + y * 90) % 65_536) as f64 / 65_535.0);
     let path = folder.join("out.png");
@@ -250,7 +250,7 @@ fn sixteen_bits_go_out_and_come_back_exactly_and_no_stub_is_left() {
 }
 
 #[test]
-fn eight_bits_in_a_sixteen_bit_file_are_known_for_what_they_are() {
+fn eight_bits_in_a_sixteen_bit_file_are_recognised() {
     let path = scratch("scaled").join("scaled.png");
     save_gray16(&path, &Raster::from_fn(64, 64, |x, y| ((x + 3 * y) % 256) as f64 / 255.0))
         .expect("writable");

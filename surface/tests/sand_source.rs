@@ -71,7 +71,7 @@ fn support_force_n(sand: &mut SandSource, position_m: [f64; 2], depth_m: f64) ->
 }
 
 #[test]
-fn synchronous_sand_renders_the_same_bits_in_any_split_and_keeps_its_volume() {
+fn synchronous_sand_renders_the_same_bits_and_keeps_its_volume() {
     let run = |lengths: &[usize]| {
         let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         let heights = play(&mut sand, 1000, 60_000, lengths, 2.0, |_| ());
@@ -87,7 +87,7 @@ fn synchronous_sand_renders_the_same_bits_in_any_split_and_keeps_its_volume() {
 }
 
 #[test]
-fn fresh_flat_sand_is_flat_but_for_its_grains_and_has_no_saw_at_the_frame_rate() {
+fn fresh_flat_sand_is_flat_but_for_its_grains() {
     let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let heights = play(&mut sand, 0, 60_000, &[64], 1.0, |_| ());
     // Grains alone, from a source that is never pressed.
@@ -131,7 +131,7 @@ fn an_old_groove_is_felt_by_a_stroke_across_it() {
 }
 
 #[test]
-fn a_finger_that_was_lifted_is_put_down_again_and_not_dragged_across() {
+fn a_finger_lifted_and_put_down_is_not_dragged_across() {
     // Two taps of the same voice, 0.1 m apart, with half a second between them or hardly any.
     for gap in [22_016, 64] {
         let mut sand = SandSource::synchronous(&design(), 1).unwrap();
@@ -185,7 +185,7 @@ fn the_audio_half_goes_on_while_the_simulation_is_stuck_for_good() {
 }
 
 #[test]
-fn the_simulation_catches_up_after_a_pause_and_its_patches_circulate_for_ever() {
+fn the_simulation_catches_up_after_a_pause() {
     let (mut sand, mut worker) = SandSource::threaded(&design(), 1).unwrap();
     let mut touches = 0;
     for round in 0..40 {
@@ -241,7 +241,7 @@ fn the_force_of_another_law_comes_without_a_step() {
 }
 
 #[test]
-fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
+fn a_law_is_exchanged_at_run_time_if_possible() {
     let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
     assert!(sand.set(&wet, 0));
@@ -279,7 +279,7 @@ fn pushed(sand: &mut SandSource, touch: &Touch) -> [f64; 2] {
 }
 
 #[test]
-fn the_drag_is_the_document_s_in_any_direction_and_a_resting_finger_is_not_pushed_sideways_by_grains() {
+fn drag_is_the_documents_in_any_direction() {
     for (force, velocity) in [(0.5, [0.08, 0.01]), (4.0, [-0.3, 0.2]), (2.0, [0.0, 0.0])] {
         let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         for k in 0..400 {
@@ -304,7 +304,7 @@ fn the_drag_is_the_document_s_in_any_direction_and_a_resting_finger_is_not_pushe
 }
 
 #[test]
-fn a_tip_is_carried_by_the_law_at_its_depth_below_the_sand_as_it_lies() {
+fn a_tip_is_carried_by_the_law_at_its_depth() {
     for law in [SandLaw::default(), SandLaw { wetness: 0.6, exponent_per_m: 80.0, ..SandLaw::default() }] {
         let bed = SandDesign { law, ..design() };
         let mut sand = SandSource::synchronous(&bed, 1).unwrap();
@@ -345,7 +345,7 @@ fn a_wider_tool_sinks_less_under_the_same_force() {
 }
 
 #[test]
-fn a_contact_lands_on_the_sand_as_it_lies_whether_that_is_simulated_here_or_elsewhere() {
+fn a_contact_lands_on_the_sand_as_it_lies_simulated_anywhere() {
     // A trench 1 mm deep and 6 mm wide, which the coarse view of the whole bed hardly shows.
     let trench = |x: usize, _: usize| 0.05 - 0.001 * (-((x as f64 * 0.0005 - 0.07) / 0.003).powi(2)).exp();
     let mut here = SandSource::synchronous(&design(), 1).unwrap();

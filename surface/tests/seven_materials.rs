@@ -15,7 +15,7 @@ fn materials_are_told_apart_by_the_heights_under_the_finger() {
 }
 
 #[test]
-fn materials_are_told_apart_by_the_force_on_a_tool_because_pebbles_lie_in_a_viscous_medium() {
+fn materials_differ_by_the_force_on_a_tool_through_pebbles() {
     let (score, confusions) = identified(QUESTION, &seven(), |m, rng| force(m, &stroke(rng)));
     // Table 1 as printed, where granite and pebbles differ by their magnitude alone.
     let mut dry = seven();

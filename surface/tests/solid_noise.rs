@@ -85,7 +85,7 @@ fn any_split_into_blocks_gives_the_same_bits_also_across_a_change() {
 }
 
 #[test]
-fn a_tool_at_rest_feels_a_constant_force_and_the_same_one_at_the_same_place() {
+fn a_tool_at_rest_feels_a_constant_force() {
     let source = made(SolidMaterial::Granite);
     let force_at = |sample| felt(&mut source.clone(), sample, 0.5)[0];
     let first = force_at(0);
@@ -113,7 +113,7 @@ fn felt(source: &mut SolidNoise, first_sample: u64, normal_force_n: f64) -> Vec<
 }
 
 #[test]
-fn nothing_is_felt_of_a_block_that_is_not_penetrated_neither_texture_nor_medium() {
+fn an_empty_block_is_felt_neither_as_texture_nor_medium() {
     for material in SolidMaterial::SEVEN {
         assert_eq!(felt(&mut made(material), 0, 0.0), vec![[0.0; 3]; 64], "{material:?}");
         assert_eq!(made(material).force_n([0.01, 0.02], [0.1, 0.0], 0.0, 0.0, 0), [0.0; 3]);
@@ -122,7 +122,7 @@ fn nothing_is_felt_of_a_block_that_is_not_penetrated_neither_texture_nor_medium(
 }
 
 #[test]
-fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps_it_awake() {
+fn a_flowing_block_feels_like_a_moving_tool_and_keeps_it_awake() {
     let mut parameters = SolidMaterial::Gravel.parameters();
     let still = SolidNoise::new(parameters, 7).unwrap();
     parameters.flow_m_s = [0.08, -0.03, 0.0];
@@ -153,7 +153,7 @@ fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps
 }
 
 #[test]
-fn the_force_stays_under_its_cap_and_follows_its_direction_and_the_medium_drags() {
+fn force_stays_under_its_cap_and_the_medium_drags() {
     let mut parameters = SolidMaterial::Pebbles.parameters();
     parameters.limit_n = 1.0;
     parameters.direction = ForceDirection::Tangent;

@@ -29,7 +29,7 @@ fn sand_drags_with_its_law_from_touch_on_and_with_nothing_before() {
 }
 
 #[test]
-fn depth_in_gives_the_document_s_force_out_dry_and_wet_resting_and_dragging() {
+fn depth_in_gives_the_documents_force_out() {
     let wet = SandLaw { wetness: 0.7, ..SandLaw::default() };
     let curved = SandLaw { stiffness_n: 8.0, exponent_per_m: 150.0, ..SandLaw::default() };
     for law in [SandLaw::default(), wet, curved] {
@@ -55,7 +55,7 @@ fn depth_in_gives_the_document_s_force_out_dry_and_wet_resting_and_dragging() {
 }
 
 #[test]
-fn a_tip_above_the_sand_feels_nothing_and_one_that_dips_in_feels_its_way_down() {
+fn a_tip_above_the_sand_feels_nothing_until_it_dips() {
     let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.6 };
     // Down at 2 cm/s from 2 mm above to 4 mm below, and up again.
     let depth_m = |t: f64| if t < 0.3 { -0.002 + 0.02 * t } else { 0.004 - 0.02 * (t - 0.3) };
@@ -90,7 +90,7 @@ fn depths_of_a_game(rng: &mut Rng, seconds: f64) -> impl Fn(f64) -> f64 + use<> 
 }
 
 #[test]
-fn rows_of_steep_landings_that_a_game_reports_keep_to_the_cap_and_to_0_n_in_the_air() {
+fn steep_landings_keep_to_the_cap_and_0_n_in_air() {
     let mut rng = Rng::new(2931);
     let (mut most_n, mut landings, mut in_the_air) = (0.0_f64, 0, 0);
     for game in 0..24 {
@@ -145,7 +145,7 @@ fn seen_m(depth_m: f64, last_m: f64, rng: &mut Rng) -> f64 {
 }
 
 #[test]
-fn twenty_loops_that_nobody_prepared_get_finite_forces_within_the_cap_and_end_within_what_a_hand_gave() {
+fn twenty_unprepared_loops_get_finite_forces_within_the_cap() {
     let mut rng = Rng::new(1224);
     for case in 0..20 {
         let between = |low: f64, high: f64, rng: &mut Rng| low * (high / low).powf(rng.uniform());
@@ -226,7 +226,7 @@ fn twenty_loops_that_nobody_prepared_get_finite_forces_within_the_cap_and_end_wi
 }
 
 #[test]
-fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
+fn a_soft_map_is_a_spring_and_a_hard_one_refuses_depth() {
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1e-4 };
     let mut rng = Rng::new(5);
     let heights = Raster::from_fn(64, 64, |_, _| rng.uniform());

@@ -32,7 +32,7 @@ fn the_law_agrees_with_plain_python_at_5_khz() {
 }
 
 #[test]
-fn the_force_of_seven_materials_is_the_law_within_one_percent_at_every_rate() {
+fn the_force_of_seven_materials_is_the_law_within_one_percent() {
     for sample_rate_hz in [22_050.0, 44_100.0, 192_000.0] {
         for material in SolidMaterial::SEVEN {
             let noise = SolidNoise::new(material.parameters(), 7).unwrap();
@@ -68,7 +68,7 @@ fn the_force_of_seven_materials_is_the_law_within_one_percent_at_every_rate() {
 }
 
 #[test]
-fn a_thousand_rows_a_second_feel_sandpaper_at_15_cm_a_second_and_nothing_that_does_not_press() {
+fn a_thousand_rows_a_second_feel_sandpaper_at_15_cm_s() {
     let rms = |speed_m_s: f64, force_n: f64| {
         let stroke = Stroke { sample_rate_hz: 22_050.0, rows_hz: 1000.0, reports_hz: 60.0, seconds: 0.5 };
         let felt = stroke.run(block_of(SolidMaterial::Sandpaper), |t| {
@@ -103,7 +103,7 @@ fn height(surface: Surface, sample: ContactSample) -> f64 {
 }
 
 #[test]
-fn a_sphere_and_a_cube_are_cut_from_one_block_by_the_place_that_a_contact_tells() {
+fn a_sphere_and_a_cube_are_cut_from_one_block() {
     let granite = || SolidNoise::new(SolidMaterial::Granite.parameters(), 7).unwrap();
     let plane = |frame: SurfaceFrame| {
         let [u_axis, v_axis] = frame.axes();

@@ -6,7 +6,7 @@ use asperity::surface::solid_materials::SolidMaterial;
 use asperity::{ChannelId, Config, ContactEvent, ContactId, ContactSample, Engine, Surface, SurfaceId};
 
 #[test]
-fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold_up_nothing() {
+fn slow_fast_and_double_force_readers_count_their_losses() {
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let surface: SurfaceId = scene.add_surface(block_of(SolidMaterial::Gravel)).unwrap();
     let port = |holds_s| Force { rate_hz: 1000.0, holds_s };
@@ -43,7 +43,7 @@ fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold
 /// Between two landings of one contact, 10 N and then 1 N, the first of which still fades: what a
 /// row tells is the second.
 #[test]
-fn a_contact_that_lifts_and_lands_elsewhere_at_once_is_felt_where_it_is_and_not_where_it_fades() {
+fn a_contact_that_lifts_and_lands_elsewhere_is_felt_there() {
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let plate = Surface::flat(SIDE_M, SIDE_M).unwrap();
     let surface: SurfaceId = scene.add_surface(plate).unwrap();

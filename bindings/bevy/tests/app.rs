@@ -41,7 +41,7 @@ fn heard(app: &App, from: usize) -> f32 {
 }
 
 #[test]
-fn two_seconds_of_a_finger_on_a_plate_are_what_their_recording_renders_to_and_are_felt() {
+fn two_recorded_seconds_of_a_finger_render_the_same() {
     let mut app = app();
     let both = finger_and_plate(&mut app);
     touch(&mut app).start_recording();
@@ -78,7 +78,7 @@ fn the_null_output_renders_exactly_the_apps_own_time() {
 }
 
 #[test]
-fn a_plate_that_is_despawned_while_it_sounds_rings_out_and_the_app_goes_on() {
+fn a_despawned_plate_rings_out_and_the_app_continues() {
     let mut app = app();
     let both = finger_and_plate(&mut app);
     stroke(&mut app, both, 0..30);
@@ -233,7 +233,7 @@ fn a_blow_that_a_finger_feels_stays_within_full_scale() {
 }
 
 #[test]
-fn an_impossible_config_is_no_panic_and_the_app_runs_on_in_silence() {
+fn an_impossible_config_is_no_panic_and_the_app_runs_on() {
     let mut app = App::new();
     let config = asperity::Config { sample_rate_hz: -1.0, ..asperity::Config::default() };
     app.add_plugins(MinimalPlugins).add_plugins(AsperityPlugin { config, output: Output::default() });

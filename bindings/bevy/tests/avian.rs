@@ -52,7 +52,7 @@ fn run(app: &mut App) {
 }
 
 #[test]
-fn a_ball_dropped_on_a_plate_strikes_it_and_the_recording_renders_to_the_same_bits() {
+fn a_ball_dropped_on_a_plate_and_its_recording_sound_alike() {
     let (mut app, _) = world();
     app.world_mut().spawn((
         RigidBody::Dynamic,
@@ -69,7 +69,7 @@ fn a_ball_dropped_on_a_plate_strikes_it_and_the_recording_renders_to_the_same_bi
 }
 
 #[test]
-fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_to_the_same_bits() {
+fn a_sliding_block_and_its_recording_render_the_same_bits() {
     let (mut app, _) = world();
     app.world_mut().spawn(block());
     run(&mut app);
@@ -78,7 +78,7 @@ fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_
 }
 
 #[test]
-fn a_block_that_nobody_holds_scrapes_as_a_rigid_thing_and_falls_silent_when_it_rests() {
+fn a_loose_block_scrapes_as_a_rigid_thing_and_rests_silently() {
     let (mut app, _) = world();
     let block = app.world_mut().spawn(block()).id();
     app.world_mut().entity_mut(block).insert(TouchThing::of(Material::STEEL));
@@ -87,7 +87,7 @@ fn a_block_that_nobody_holds_scrapes_as_a_rigid_thing_and_falls_silent_when_it_r
 }
 
 #[test]
-fn a_ball_that_rolls_takes_its_place_of_contact_along_and_a_finger_lands_as_a_contact() {
+fn a_rolling_ball_carries_its_contact_and_a_finger_lands_as_one() {
     let (mut app, _) = world();
     app.world_mut().spawn((
         RigidBody::Dynamic,
@@ -121,7 +121,7 @@ fn a_ball_that_rolls_takes_its_place_of_contact_along_and_a_finger_lands_as_a_co
 }
 
 #[test]
-fn a_rod_that_lands_on_one_end_strikes_with_a_quarter_of_its_mass_and_two_balls_with_half_of_theirs() {
+fn landing_rods_strike_with_a_quarter_mass_and_two_balls_with_half() {
     let (mut app, _) = world();
     app.world_mut().spawn((
         RigidBody::Dynamic,
@@ -170,7 +170,7 @@ fn a_plate_despawned_under_a_sliding_block_is_no_panic() {
 }
 
 #[test]
-fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_hand() {
+fn a_struck_plate_sounds_by_hand_in_middle_edge_and_corner() {
     let levels_db = PLACES_M.map(|[x, z]| {
         let mut app = with_physics();
         app.world_mut().spawn((

@@ -38,7 +38,7 @@ fn lift(app: &mut App, finger: Entity) {
 }
 
 #[test]
-fn a_tracked_finger_presses_with_stiffness_times_depth_and_lags_by_the_proxy() {
+fn a_tracked_finger_presses_with_stiffness_times_depth() {
     let mut app = app();
     let [finger, _] = hand(&mut app);
     touch(&mut app).start_recording();
@@ -60,7 +60,7 @@ fn a_tracked_finger_presses_with_stiffness_times_depth_and_lags_by_the_proxy() {
 }
 
 #[test]
-fn a_finger_over_a_plate_that_goes_and_one_that_goes_itself_touch_nothing_any_more() {
+fn a_finger_on_a_plate_that_is_gone_touches_nothing() {
     let mut app = app();
     let [finger, plate] = hand(&mut app);
     follow(&mut app, finger, 0..30);

@@ -41,7 +41,7 @@ fn run(app: &mut App) {
 }
 
 #[test]
-fn a_ball_dropped_on_a_plate_strikes_it_and_the_recording_renders_to_the_same_bits() {
+fn a_ball_dropped_on_a_plate_and_its_recording_sound_alike() {
     let (mut app, _) = world();
     app.world_mut().spawn((
         RigidBody::Dynamic,
@@ -70,7 +70,7 @@ fn block() -> impl Bundle {
 }
 
 #[test]
-fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_to_the_same_bits() {
+fn a_sliding_block_and_its_recording_render_the_same_bits() {
     let (mut app, _) = world();
     app.world_mut().spawn((block(), TouchThing::of(Material::STEEL).felt_by(0)));
     run(&mut app);
@@ -79,7 +79,7 @@ fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_
 }
 
 #[test]
-fn a_ball_that_rolls_tells_its_radius_and_that_it_hardly_slips_and_a_block_that_slides_tells_nothing() {
+fn a_rolling_ball_reports_radius_and_little_slip_and_a_block_neither() {
     let (mut app, _) = world();
     app.world_mut().spawn((
         RigidBody::Dynamic,
@@ -119,7 +119,7 @@ fn a_plate_despawned_under_a_sliding_block_is_no_panic() {
 }
 
 #[test]
-fn a_plate_struck_in_the_middle_at_an_edge_and_at_a_corner_sounds_as_told_by_hand() {
+fn a_struck_plate_sounds_by_hand_in_middle_edge_and_corner() {
     let levels_db = PLACES_M.map(|[x, z]| {
         let mut app = with_physics();
         app.world_mut().spawn((

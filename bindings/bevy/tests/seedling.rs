@@ -179,7 +179,7 @@ fn a_games_usual_graph_plays_it_through_its_main_bus() {
 }
 
 #[test]
-fn a_stream_that_starts_anew_at_another_rate_and_with_longer_blocks_goes_on_sounding_there() {
+fn a_stream_restarted_at_another_rate_continues() {
     let mut app = app_with(AudioGraphTemplate::Game);
     let mut stream = Stream::start(&mut app, 48_000, 64);
     let plate = plate(&mut app);

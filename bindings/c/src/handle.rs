@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_handle_is_one_callers_at_a_time_and_poisoned_by_a_panic() {
+    fn a_handle_has_one_caller_and_is_poisoned_by_a_panic() {
         static TABLE: Table<u32> = Table::new(2, "number");
         let handle = TABLE.insert(1).unwrap();
         {
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn a_handle_of_another_copy_of_the_table_is_none_of_this_one() {
+    fn a_handle_of_another_table_is_unknown_to_this_one() {
         static ONE: Table<u32> = Table::new(1, "number");
         static OTHER: Table<u32> = Table::new(1, "number");
         let (one, other) = (ONE.insert(1).unwrap(), OTHER.insert(2).unwrap());

@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_of_the_engine_has_a_number_and_every_number_a_preset() {
+    fn every_preset_of_the_engine_has_one_number() {
         let constants = include_str!("material.rs").lines().filter_map(|line| {
             let (name, number) = line.strip_prefix("pub const ASP_MATERIAL_")?.split_once(": u32 = ")?;
             Some((name.to_lowercase(), number.trim_end_matches(';').parse().unwrap()))

@@ -292,7 +292,7 @@ mod tests {
     use asperity::Mode;
 
     #[test]
-    fn a_slow_force_rings_a_mode_of_any_phase_as_the_convolution_does() {
+    fn a_slow_force_rings_a_mode_as_the_convolution_does() {
         let (rate_hz, pushed_s) = (SAMPLE_RATE_HZ * INNER as f64, 2e-3);
         let force_n = |t: f64| if t < pushed_s { 0.5 - 0.5 * (TAU * t / pushed_s).cos() } else { 0.0 };
         for phase_rad in [0.0, 0.7, -1.3, 3.0] {

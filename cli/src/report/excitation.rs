@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_missed_of_the_same_sound_and_a_masked_tone_is_missed_less_than_one_alone() {
+    fn the_same_sound_misses_nothing_and_a_masked_tone_misses_less() {
         let tone = |hz: f64, amplitude: f64| {
             (0..44_100).map(move |n| amplitude * (std::f64::consts::TAU * hz * f64::from(n) / 44_100.0).sin())
         };

@@ -149,7 +149,7 @@ mod tests {
     use asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
 
     #[test]
-    fn the_default_contact_is_contractive_and_gains_nothing_and_a_stiff_one_changes_its_scheme() {
+    fn the_default_contact_is_contractive_and_stiff_ones_change_scheme() {
         let grounds = [0.0, MOVED_M].map(|moved_m| ground(44_100.0, moved_m));
         let fingertip = cell(CONTACT_STIFFNESS_N_M, 44_100.0, Integrator::ExactEvent, &grounds).unwrap();
         assert!(fingertip.contractive && fingertip.energy_gain < 1e-6, "{fingertip:?}");

@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_outside_its_bound_fails_and_so_does_one_that_is_no_number() {
+    fn a_row_outside_its_bound_and_one_without_number_fail() {
         let mut part = Part::default();
         for (ours, bound) in [(0.5, [Some(0.6), None]), (0.7, [Some(0.6), None]), (f64::NAN, [None, None])] {
             part.row("x", ours, bound, ("", "", ""));

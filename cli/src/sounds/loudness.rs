@@ -38,7 +38,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_scale_tone_of_997_hz_has_the_loudness_of_the_recommendation() {
+    fn a_full_scale_tone_of_997_hz_has_the_recommended_loudness() {
         // ITU-R BS.1770-4, annex 1: a 0 dBFS sine of 997 Hz in one front channel reads −3.01 LKFS.
         let lufs = integrated_lufs(&[&tone(997.0, 3.0, 1.0)], 48e3).unwrap();
         assert!((lufs + 3.01).abs() < 0.05, "{lufs}");

@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hand_stays_on_ground_that_ends_and_comes_back_to_where_a_loop_begins() {
+    fn a_hand_stays_on_ground_that_ends_and_loops_with_it() {
         for path in [Path::Line, Path::Circle, Path::Zigzag] {
             let looped = Hand { settled_s: Some(1.0), ..hand(path, false) };
             for line in looped.log().lines {

@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corrugated_sheet_has_its_translation_in_words_and_a_primitive_on_disk() {
+    fn a_corrugated_sheet_has_its_translation_and_a_primitive_on_disk() {
         let sheet = Raster::from_fn(128, 112, |x, y| {
             0.5 + 0.4 * (std::f64::consts::TAU * (x as f64 + 0.2 * y as f64) / 14.0).cos()
         });

@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_photograph_says_how_wide_it_was_taken_to_be_and_how_to_say_otherwise() {
+    fn a_photograph_states_its_assumed_width_and_the_way_to_change_it() {
         let folder = tempfile::tempdir().unwrap();
         let photo = folder.path().join("wall.png");
         image_io::save_gray16(&photo, &Raster::from_fn(96, 80, |x, y| ((x * 7 + y * 13) % 31) as f64 / 31.0))

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_comes_out_as_ridge_and_tissue_in_closed_form_let_it() {
+    fn a_sine_is_felt_as_ridge_and_tissue_in_closed_form() {
         let (ridge_m, speed_m_s, force_n) = (0.1e-3, 0.1, 2.0);
         let skin = Skin::new(ridge_m, speed_m_s, force_n, RATE_HZ);
         let growth = libm::pow(force_n, 0.2);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_the_speeds_and_forces_nothing_grows_and_rest_comes_back_to_rest() {
+    fn nothing_grows_at_any_speed_and_rest_returns_to_rest() {
         let mut rng = Rng::new(5);
         let mut state = SkinState::default();
         let mut most = 0.0f64;

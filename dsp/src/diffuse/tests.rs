@@ -66,7 +66,7 @@ fn a_band_has_the_energy_and_the_decay_of_its_table() {
 }
 
 #[test]
-fn a_strike_of_twice_the_momentum_is_twice_the_sound_and_equal_strikes_are_equal() {
+fn twice_the_momentum_is_twice_the_sound() {
     let bands = bands();
     let once = answer(&bands, (Level::detect(), 3), &[(100, 1e-3)], [66_150].into_iter());
     let twice = answer(&bands, (Level::detect(), 3), &[(100, 2e-3)], [66_150].into_iter());

@@ -17,7 +17,7 @@ fn a_field_is_its_seed() {
 }
 
 #[test]
-fn remembered_cells_and_sets_that_share_a_walk_change_no_bit_on_any_level_wherever_the_path_is_cut() {
+fn remembered_cells_change_no_bit_wherever_the_path_is_cut() {
     let relief = |longest_wavelength_m| Relief {
         rms_at_1mm_m: 2e-6,
         outer_scale_m: 0.01,
@@ -75,7 +75,7 @@ fn remembered_cells_and_sets_that_share_a_walk_change_no_bit_on_any_level_wherev
 }
 
 #[test]
-fn what_cubics_through_the_samples_miss_is_told_within_a_factor_of_one_and_a_half() {
+fn what_cubics_miss_is_estimated_within_a_factor() {
     for (footprint_m, roughness, tip_radius_m) in
         [(2.3e-6, 0.5, 0.0), (1.8e-5, 0.5, 0.0), (7e-6, 0.2, 0.0), (3.4e-5, 0.9, 0.0), (1.8e-5, 0.5, 5e-4)]
     {

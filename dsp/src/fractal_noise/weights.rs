@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn between_its_nodes_the_polynomial_keeps_to_the_law_within_half_a_decibel_where_the_octave_counts() {
+    fn between_nodes_the_polynomial_keeps_the_law_within_half_a_decibel() {
         let weights = OctaveWeights::new(&MATTE);
         for (cell_m, c) in CELLS_M.into_iter().zip(weights.of) {
             let strongest = MATTE.share(PEAK_WAVELENGTH_CELLS * cell_m, 1.0).max(1e-3);
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn octaves_of_a_given_rms_have_it_at_every_roughness_and_leave_the_others_out() {
+    fn octaves_of_a_given_rms_have_it_at_every_roughness() {
         let mut rms_m = [0.0; OCTAVES];
         (rms_m[0], rms_m[3]) = (3e-5, 8e-6);
         let weights = OctaveWeights::constant(&rms_m);

@@ -346,7 +346,7 @@ mod tests {
     /// Ground that rises as c t² meets a pad at rest g above it with 2 √(c g), wherever the ticks
     /// lie.
     #[test]
-    fn a_collision_is_as_fast_as_the_ground_is_at_that_instant_and_not_in_the_mean_of_its_tick() {
+    fn a_collision_takes_the_ground_speed_of_its_instant() {
         let step_s = 1.0 / 44.1e3;
         let exact = ExactEvent::new(&Probe::default(), step_s);
         let rise_m = 1e-5;

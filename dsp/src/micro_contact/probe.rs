@@ -182,7 +182,7 @@ mod tests {
     use crate::hertz::Elastic;
 
     #[test]
-    fn a_tool_that_bends_stands_behind_its_tip_and_a_stiff_thing_with_its_whole_mass() {
+    fn a_bending_tool_stands_behind_its_tip() {
         let tip = HeardTip {
             mass_kg: 5e-4,
             damping_n_s_m: 15.0,
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_bridges_with_the_ball_of_its_length_and_never_rides_more_sharply_than_its_tip() {
+    fn a_face_bridges_as_its_ball_and_never_sharper_than_its_tip() {
         let face = Probe { face_m: 0.3, tip_radius_m: 1e-3, ..Probe::default() };
         // L²/8h: 2.25 m over 5 mm.
         assert!((face.ride_radius_m(5e-3) - 2.25).abs() < 1e-12);

@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn with_its_bend_a_cubic_is_a_polynomial_of_the_fourth_degree_to_rounding() {
+    fn with_its_bend_a_cubic_is_a_quartic_to_rounding() {
         let (quartic_correction, halves) = quartic_correction(Level::detect(), 50);
         assert_eq!((&quartic_correction[..3], &halves[..3]), (&[[0.0; 4]; 3][..], &[[[0.0; 4]; 2]; 3][..]));
         let at = |x: f64| height(0.1 * x);
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn bends_are_the_same_bits_on_every_set_of_instructions_and_in_any_blocks() {
+    fn bends_have_the_same_bits_on_every_instruction_set() {
         let whole = quartic_correction(Level::detect(), 50);
         for level in Level::available() {
             for cuts in [1, 2, 3, 7, 33, 50] {

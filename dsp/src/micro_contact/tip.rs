@@ -75,7 +75,7 @@ mod tests {
 
     // k = 3/2 δ^½ · 4/3 E* √r where 4/3 E* √r δ^1.5 = 1 N, in numpy.
     #[test]
-    fn a_steel_tip_is_as_stiff_as_hertz_has_it_on_steel_and_on_wood() {
+    fn a_steel_tip_is_as_stiff_as_hertz_says() {
         let on = |young_pa, poisson| TIP.stiffness_n_m(Elastic { young_pa, poisson }.modulus_pa());
         for (found, numpy) in [(on(200e9, 0.29), 3.058e6), (on(11e9, 0.25), 6.676e5)] {
             assert!((found / numpy - 1.0).abs() < 1e-3, "{found} for {numpy}");

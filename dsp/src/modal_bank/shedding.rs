@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_of_thousands_of_modes_is_ordered_with_what_nobody_hears_last() {
+    fn a_body_of_thousands_of_modes_puts_inaudible_ones_last() {
         let mut modes = body(3000);
         modes[1234].amplitude = 1e-9;
         let mut order = std::vec![Ranked::default(); 3000];
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn ordering_eight_times_the_modes_takes_far_less_than_sixty_four_times_the_time() {
+    fn ordering_eight_times_the_modes_takes_far_less_than_sixty_fourfold() {
         let timed = |count: usize| {
             let modes = body(count);
             let mut order = std::vec![Ranked::default(); count];
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_struck_body_in_the_order_of_need_is_awake_at_most_twice_as_long_as_in_that_of_ringing() {
+    fn ordering_by_need_keeps_bodies_awake_at_most_twice_as_long() {
         for count in [48, 100, 256, 349] {
             let modes = body(count);
             let mut order = std::vec![Ranked::default(); count];

@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_that_moves_and_is_said_to_rest_is_not_believed_until_a_velocity_comes() {
+    fn a_moving_finger_reported_still_keeps_its_speed_until_a_velocity_comes() {
         let mut standstill = Standstill::begin(REST);
         assert_eq!(standstill.weigh(REST, [1e-3, 0.0]), (None, true));
         assert_eq!(standstill.weigh(REST, [1e-3, 0.0]), (None, false));

@@ -118,7 +118,7 @@ fn a_finger_that_sticks_stops() {
 }
 
 #[test]
-fn a_contact_nobody_refreshes_glides_less_than_a_tenth_of_a_second_and_rests() {
+fn an_unrefreshed_contact_glides_less_than_a_tenth_of_a_second() {
     let mut events = steady(1, 0.0, 0.0, 0.0, true);
     events.truncate(60);
     let design = design(PathMode::Extrapolate);
@@ -210,7 +210,7 @@ fn old_and_broken_events_change_nothing() {
 }
 
 #[test]
-fn a_contact_that_lands_with_a_broken_report_lies_at_the_origin_without_force() {
+fn a_broken_landing_report_lies_at_the_origin_without_force() {
     let design = design(PathMode::Extrapolate);
     for bad in [
         event(1000, f64::NAN, Some(0.1)),
@@ -341,7 +341,7 @@ fn steady_between_samples(rate_hz: f64, velocity: Option<f64>) -> Vec<PathEvent>
 }
 
 #[test]
-fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples() {
+fn ripple_and_lag_are_the_same_at_every_rate() {
     for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
         for (mode, velocity) in [
             (PathMode::Extrapolate, Some(0.1)),
@@ -361,7 +361,7 @@ fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples(
 }
 
 #[test]
-fn a_band_limited_path_has_no_step_in_place_or_velocity_at_a_noisy_report() {
+fn a_band_limited_path_has_no_step_at_a_noisy_report() {
     let design = design(PathMode::BandLimited);
     let points = render(&design, &steady(4, 0.2, 50e-6, 0.02, true), 132_500);
     for pair in points.windows(2) {

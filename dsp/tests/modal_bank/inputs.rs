@@ -128,7 +128,7 @@ fn several_inputs_add_up_with_their_gains() {
 }
 
 #[test]
-fn gains_that_change_while_something_slides_are_two_inputs_that_cross_fade_without_a_step() {
+fn gains_changed_while_sliding_cross_fade_without_a_step() {
     let (rate, samples) = (44_100.0, 8_820);
     let mut rng = Rng::new(71);
     let modes = body(37, &mut rng);
@@ -159,7 +159,7 @@ fn gains_that_change_while_something_slides_are_two_inputs_that_cross_fade_witho
 }
 
 #[test]
-fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
+fn a_bank_begins_with_its_states_and_loses_them_when_silenced() {
     let groups = design(&body(40, &mut Rng::new(72)), 48_000.0);
     let mut struck = ModalBank::new(Level::detect(), &groups[..], [GroupState::REST; 3]);
     let mut impulses = [0.0; 64];
@@ -178,7 +178,7 @@ fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
 }
 
 #[test]
-fn output_is_added_to_what_is_there_and_unequal_slices_do_no_harm() {
+fn output_is_added_and_unequal_slices_do_no_harm() {
     let groups = design(&[mode(500.0, 20.0, 1.0, 0.5)], 44_100.0);
     let mut out = [1.0_f32; 8];
     let mut bank = bank(Level::detect(), &groups);

@@ -8,7 +8,7 @@ use asperity_dsp::simd::Level;
 use std::f64::consts::PI;
 
 #[test]
-fn a_body_that_has_rung_out_sleeps_exactly_and_wakes_with_the_next_impulse() {
+fn a_body_that_has_rung_out_sleeps_until_the_next_impulse() {
     let mut rng = Rng::new(8);
     let mut modes = body(100, &mut rng);
     sort_by_decay(&mut modes);

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pad_turns_as_the_port_says_from_the_heavy_motor_to_the_light_one_and_a_pulled_pad_is_told() {
+    fn a_pad_turns_as_the_port_says_and_unplugging_is_reported() {
         // SAFETY: SDL is started first, and the description outlives the call that reads it.
         let (id, pad) = unsafe {
             assert!(SDL_Init(SDL_INIT_GAMEPAD));

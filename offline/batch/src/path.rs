@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn every_report_lies_on_the_surface_and_its_velocity_is_that_of_the_places() {
+    fn every_report_lies_on_the_surface_with_the_places_velocity() {
         for shape in [Shape::Line, Shape::Arc, Shape::BackAndForth] {
             for stroke in 0..20 {
                 let samples = samples(shape, 0.5, stroke);

@@ -16,7 +16,7 @@ const MOST: f64 = 0.2;
 const MOST_BESIDE_OTHERS: f64 = 0.4;
 
 #[test]
-fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() {
+fn drawing_and_opening_cost_a_fifth_of_rendering_a_stroke() {
     if cfg!(debug_assertions) {
         return println!("skipped: an unoptimised build says nothing about cost");
     }

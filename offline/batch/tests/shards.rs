@@ -56,7 +56,7 @@ fn bytes(folder: &TempDir, name: &str) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn shards_have_the_same_bytes_in_any_order_and_after_a_killed_run() {
+fn shards_have_the_same_bytes_after_a_killed_run() {
     for format in ["parquet", "webdataset"] {
         let folder = tempfile::tempdir().unwrap();
         let text = SPEC.replace("tail_s", &format!("format = \"{format}\"\ntail_s"));
@@ -231,7 +231,7 @@ fn a_part_without_a_stroke_is_told() {
 }
 
 #[test]
-fn a_scene_file_s_maps_are_copied_and_a_record_renders_from_the_folder_alone() {
+fn a_scenes_maps_are_copied_and_its_record_renders_alone() {
     let folder = tempfile::tempdir().unwrap();
     let picture: Vec<u8> = (0..64 * 64).map(|i| ((i * 7) % 251) as u8).collect();
     let mut pgm = b"P5 64 64 255\n".to_vec();
@@ -278,7 +278,7 @@ fn halves_of_killed_runs_are_removed_and_those_of_living_ones_stay() {
 }
 
 #[test]
-fn a_record_drawn_renders_as_its_two_texts_do_and_as_a_scene_with_room_for_more() {
+fn a_drawn_record_renders_as_its_texts_and_in_larger_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let there = set(&folder, SPEC, "set").unwrap();
     for number in 0..4 {
@@ -431,7 +431,7 @@ fn quantities_are_written_as_a_name_a_table_or_a_list() {
 }
 
 #[test]
-fn what_is_felt_grows_with_the_force_that_presses_and_metres_that_are_asked_for_do_not() {
+fn feeling_grows_with_force_and_stated_metres_do_not() {
     let folder = tempfile::tempdir().unwrap();
     let rms = |force: &str, haptic: &str, name: &str| {
         let text = SPEC
@@ -457,7 +457,7 @@ fn what_is_felt_grows_with_the_force_that_presses_and_metres_that_are_asked_for_
 }
 
 #[test]
-fn every_value_of_a_choice_and_a_range_is_tried_before_anything_is_rendered() {
+fn choices_and_ranges_are_tried_before_anything_is_rendered() {
     for (from, to, part) in [
         ("\"back-and-forth\"", "\"zigzag\"", "line 14: finger.path: \"zigzag\" is unknown"),
         ("[\"ceramic\", \"wood\"]", "[\"wood\", \"stel\"]", "line 10: body 1 \"body\": material: \"stel\""),

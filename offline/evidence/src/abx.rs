@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn the_judge_guesses_between_equals_and_scores_as_the_normal_law_says_otherwise() {
+    fn the_judge_guesses_between_equals_and_scores_by_the_normal_law() {
         let equal = right_answers(&drawn(1000, 0.0, 1), &drawn(1000, 0.0, 2));
         assert!((equal - 0.5).abs() < 0.04, "{equal}");
         // Two standard deviations apart, halfway between is one from each: Φ(1) = 0.841.
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarse_grid_is_told_from_a_fine_one_and_not_from_itself() {
+    fn a_coarse_grid_differs_from_a_fine_one_and_not_from_itself() {
         let coarse = felt(16.0, 1.0, 1);
         let told = right_answers(&coarse, &felt(8.0, 1.0, 2));
         assert!(told > 0.95, "{told}");
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn gratings_are_told_apart_as_often_as_the_angles_of_the_strokes_allow() {
+    fn gratings_are_told_apart_as_the_strokes_angles_allow() {
         // Across a grating at an angle a finger meets cos θ as many ridges a second. A stroke on
         // the fine one (half the period) beyond 60° is one on the coarse one; the best judge is
         // right in 1/2 + 1/2 · 60°/90° = 5/6.

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_below_every_threshold_is_one_surface_to_the_observer_and_two_to_the_machine() {
+    fn below_every_threshold_the_observer_sees_one_surface() {
         let size = Size { texel_m: 1.5e-4, relief_m: 1e-7 };
         let strokes = |period, seed| percepts(&grid(period, 1.0), true, size, 60, seed).unwrap();
         let told = right_answers(&strokes(16.0, 1), &strokes(8.0, 2));
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_is_nearest_to_itself_and_the_further_the_more_it_is_changed() {
+    fn a_surface_is_nearest_to_itself_and_farther_when_changed() {
         let impression = |height| Impression::of(&grid(8.0, height), 0.0096, 1e-4, (30, 7)).unwrap();
         let original = impression(1.0);
         let distances = [1.0, 0.9, 0.5, 0.1].map(|height| original.distance(&impression(height)));

@@ -26,7 +26,7 @@ fn no_constant_has_been_changed_since_the_observer_was_frozen() {
 }
 
 #[test]
-fn sines_one_difference_threshold_apart_are_told_apart_as_often_as_the_threshold_says() {
+fn sines_one_threshold_apart_are_told_apart_at_threshold() {
     for (frequency_hz, weber) in [(10.0, 0.58), (125.0, 0.20), (250.0, 0.20)] {
         let peak = 10.0 * 2f64.sqrt() * touch_threshold_m(frequency_hz);
         let look = |peak| felt(&sine(frequency_hz, peak, 1.0), RATE_HZ, Unit::Displacement, None);
@@ -90,7 +90,7 @@ fn a_level_step_is_missed_more_often_the_noisier_the_observer() {
 }
 
 #[test]
-fn mirrored_halves_are_told_apart_with_the_place_of_the_hand_and_not_without() {
+fn mirrored_halves_differ_only_with_the_hands_place() {
     let samples = (2.0 * RATE_HZ) as usize;
     let place: Vec<[f64; 2]> = (0..samples).map(|n| [n as f64 / samples as f64, 0.5]).collect();
     let axis = vec![0; samples];

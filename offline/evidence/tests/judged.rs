@@ -39,7 +39,7 @@ fn told(tables: &[Table], names: &[&str]) {
 }
 
 #[test]
-fn the_second_observer_s_constants_are_those_that_were_fixed_before_it_was_asked() {
+fn the_second_observers_constants_are_those_fixed_beforehand() {
     assert_eq!(
         second::constants_sha256(),
         "ed5cba719d6160e8954fc33859e9f77161c2a63b5432de632433d7edee9342d6"
@@ -47,7 +47,7 @@ fn the_second_observer_s_constants_are_those_that_were_fixed_before_it_was_asked
 }
 
 #[test]
-fn a_rhythm_over_the_period_of_the_ground_is_heard_and_steady_noise_is_not() {
+fn a_rhythm_of_the_grounds_period_is_heard_not_steady_noise() {
     let rate_hz = 44_100.0;
     let mut rng = asperity_dsp::rng::Rng::new(5);
     let mut depths = |depth: f64, rate: f64| {

@@ -104,7 +104,7 @@ fn an_offset_is_removed() {
 }
 
 #[test]
-fn of_two_strikes_the_one_that_rings_longer_alone_is_fitted_unless_another_is_asked_for() {
+fn the_longer_ringing_of_two_strikes_is_fitted_by_default() {
     let mut samples = vec![0.0; 4410];
     samples.extend(render(&body(), RATE_HZ, 61_740));
     for (n, x) in render(&body(), RATE_HZ, 36_150).into_iter().enumerate() {
@@ -140,7 +140,7 @@ fn of_two_strikes_the_one_that_rings_longer_alone_is_fitted_unless_another_is_as
 type Strikes<'a> = &'a dyn Fn(&mut Vec<f64>);
 
 #[test]
-fn a_soft_strike_noise_or_hum_before_the_real_one_is_not_taken_for_it() {
+fn noise_before_the_real_strike_is_not_taken_for_it() {
     let onset = 22_050;
     let strike = |level: f64, at: usize, samples: &mut [f64]| {
         let ringing = render(&body(), RATE_HZ, samples.len() - at);

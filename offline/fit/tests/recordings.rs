@@ -64,7 +64,7 @@ fn the_decay_of_a_vibraphone_bar_is_one_exponential() {
 }
 
 #[test]
-fn what_the_engine_plays_is_no_louder_than_the_recording_and_what_is_told_of_it_is_true() {
+fn the_engine_is_no_louder_than_the_recording() {
     // A contact of 5 ms was believed in that was not there, and the modes continued backwards by as
     // much: the engine played a bang 11.7 dB over the recording's peak, which the residual hid.
     for name in ["vcsl_xylo_medium_C5_ff.wav", "vibraphone_1255.513.wav"] {

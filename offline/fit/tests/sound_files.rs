@@ -84,7 +84,7 @@ fn assert_same(name: &str, bytes: &[u8]) {
 }
 
 #[test]
-fn wav_of_every_width_and_with_any_chunks_is_the_same_sound_to_the_bit() {
+fn wav_of_every_width_is_the_same_sound() {
     let plain = chunk(b"fmt ", &format(1, 16, 4));
     let samples = chunk(b"data", &pcm16());
     let wide = |bytes: usize| data(move |x| [vec![0; bytes - 2], x.to_le_bytes().to_vec()].concat());
@@ -221,7 +221,7 @@ fn a_wav_file_whose_odd_chunk_has_no_pad_byte_is_read() {
 
 /// Reported as "truncated" and copied again in vain: a file that was written into a pipe.
 #[test]
-fn a_wav_file_of_a_program_that_could_not_know_its_length_is_not_called_cut_off() {
+fn a_wav_of_unknown_length_is_not_called_truncated() {
     for said in [0, 0x7fff_0000, 0x7fff_ffff, 0x8000_0000, u32::MAX] {
         let mut file = riff(b"RIFF", &[chunk(b"fmt ", &format(1, 16, 4)), chunk(b"data", &pcm16())]);
         file[40..44].copy_from_slice(&said.to_le_bytes());
@@ -270,7 +270,7 @@ fn aiff_c(packing: &[u8; 4], bits: u16, sound: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn aiff_c_of_either_byte_order_and_of_floats_is_the_same_sound_to_the_bit() {
+fn aiff_c_of_any_byte_order_is_the_same_sound() {
     assert_same("sowt", &aiff_c(b"sowt", 16, &pcm16()));
     let big = |x: i16| x.to_be_bytes().to_vec();
     assert_same("NONE", &aiff_c(b"NONE", 16, &data(big)));

@@ -106,13 +106,13 @@ fn peak_one(mut sound: Vec<f64>) -> Vec<f64> {
 }
 
 #[test]
-fn of_strikes_of_made_bodies_the_best_is_taken_in_nine_of_ten_cases() {
+fn of_made_strikes_the_best_is_taken_in_nine_of_ten() {
     let (wrong, all) = wrong(&made());
     assert!(all == 96 && 10 * wrong.len() <= all, "{} of {all}: {wrong:#?}", wrong.len());
 }
 
 #[test]
-fn of_strikes_of_recorded_bodies_the_best_is_taken_in_nine_of_ten_cases() {
+fn of_recorded_strikes_the_best_is_taken_in_nine_of_ten() {
     let Some(folder) = corpus("impacts") else { return };
     // Those that still ring after a tenth of a second.
     let names = [

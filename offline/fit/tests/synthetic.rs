@@ -49,7 +49,7 @@ fn modes_are_found_at_the_bound_and_nothing_else() {
 }
 
 #[test]
-fn a_hundred_modes_struck_at_once_are_neither_too_many_nor_a_push() {
+fn a_hundred_modes_at_once_are_neither_too_many_nor_a_push() {
     // As a user fits them: told nothing. Candidates by the hundred once passed for a recording that
     // is no sum of modes, and more modes than the search for the contact can predict for one that
     // is pushed for 5 ms. What the noise allows to be told was dropped 80 dB below the strongest
@@ -284,7 +284,7 @@ fn pushed(count: usize, push_s: f64, seed: u64) -> (Vec<f64>, Vec<Mode>) {
 }
 
 #[test]
-fn the_end_of_a_push_is_found_and_the_modes_after_it_are_right() {
+fn the_end_of_a_push_is_found_before_its_modes() {
     // Pushes once passed for a crowd of modes as fast as any may be, or for no sum of modes at all:
     // 23 of 48 were found.
     for (count, push_s, seed) in [(8, 3e-4, 31), (24, 2e-3, 33)] {

@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_map_of_a_relief_in_two_halves_shows_both_and_has_no_strip_at_its_borders() {
+    fn a_relief_map_in_two_halves_shows_both_without_border_strips() {
         let (smooth, rough) = (relief(256, 2.4, 0.0, 7), relief(256, 1.2, 0.0, 8));
         let both = Raster::from_fn(256, 256, |x, y| if x < 128 { smooth.at(x, y) } else { rough.at(x, y) });
         let map = ReliefSpectrum::of(&both).unwrap().roughness_map(&both);

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_rounds_give_an_image_the_envelope_of_one_of_another_size_and_keep_its_phases() {
+    fn an_image_gets_an_envelope_of_another_size_and_keeps_its_phases() {
         let wide = Envelope::new(128, 96);
         let mut coloured = noise(128, 96, 7);
         for (place, value) in coloured.iter_mut().enumerate().skip(1) {

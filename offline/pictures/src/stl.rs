@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_of_any_number_of_texels_is_closed_and_weighs_what_its_heights_do() {
+    fn a_block_of_any_texels_is_closed_and_has_its_heights_volume() {
         let mut rng = asperity_dsp::rng::Rng::new(5);
         for (w, h) in [(1, 1), (1, 4), (2, 2), (2, 5), (3, 3), (7, 4)] {
             let heights = Raster::from_fn(w, h, |_, _| 1e-3 * rng.uniform());

@@ -93,7 +93,7 @@ fn bumps_at_any_place_come_back_from_frontal_light() {
 }
 
 #[test]
-fn surfaces_without_a_ground_fall_back_and_say_so_and_a_told_method_is_refused() {
+fn surfaces_without_a_ground_fall_back_and_say_so() {
     let mut rng = Rng::new(9);
     let rough = Raster::from_fn(128, 128, |_, _| 0.5 + 0.1 * rng.normal());
     let surface = surface_from_photo(&rough, &frontal(), |_| {}).unwrap();

@@ -42,7 +42,7 @@ fn the_generator_has_the_variogram_it_promises() {
 }
 
 #[test]
-fn the_recommended_dimension_is_within_a_hundredth_on_8_and_16_bit_maps() {
+fn the_recommended_dimension_is_within_a_hundredth_on_maps() {
     let mut errors = [0.0; 2];
     for tenth in 1..=9 {
         let dimension = 2.0 + 0.1 * f64::from(tenth);

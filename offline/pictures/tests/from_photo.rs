@@ -43,7 +43,7 @@ fn tiles_are_taken_apart_and_grout_is_deep() {
 }
 
 #[test]
-fn the_grain_on_a_pattern_stays_in_the_map_and_dirt_does_not() {
+fn grain_on_a_pattern_stays_in_the_map_and_dirt_does_not() {
     let tile = |x: usize, y: usize| if x % 16 < 3 || y % 12 < 3 { 0.35 } else { 0.7 };
     let mut rng = asperity_dsp::rng::Rng::new(70);
     let grain = Raster::from_fn(192, 192, |_, _| 0.06 * rng.normal());
@@ -64,7 +64,7 @@ fn the_grain_on_a_pattern_stays_in_the_map_and_dirt_does_not() {
 }
 
 #[test]
-fn a_pattern_that_wanders_off_its_lattice_is_not_blurred_into_a_mean_cell() {
+fn a_pattern_that_drifts_is_not_blurred_into_a_mean_cell() {
     // Bumps 12 texels apart; bent, they run through every phase of their lattice.
     let bumps = |bend: f64, noise: f64| {
         let mut rng = asperity_dsp::rng::Rng::new(72);
@@ -151,7 +151,7 @@ fn fine_power(raster: &Raster) -> f64 {
 }
 
 #[test]
-fn fine_levels_rank_as_the_plain_contrast_of_1_to_8_texels_does() {
+fn fine_levels_rank_as_plain_contrast_of_fine_texels() {
     // Twelve surfaces of unlike roughness and contrast under one light.
     let mut levels: Vec<(f64, f64)> = (0..12)
         .map(|i| {
@@ -293,7 +293,7 @@ fn side_light_over_slow_shade_gives_neither_a_dome_nor_streaks() {
 }
 
 #[test]
-fn a_pattern_comes_with_a_cell_of_heights_as_high_as_the_map() {
+fn a_pattern_comes_with_a_cell_as_high_as_the_map() {
     let rough = ground(192);
     let tiles = Raster::from_fn(192, 192, |x, y| {
         let (u, v) = ((x % 24) as f64 - 11.5, (y % 24) as f64 - 11.5);

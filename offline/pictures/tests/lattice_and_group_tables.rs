@@ -137,7 +137,7 @@ fn all_seventeen_wallpaper_groups_are_named() {
 }
 
 #[test]
-fn a_picture_of_five_cells_gives_them_to_a_fiftieth_of_a_texel() {
+fn a_picture_of_five_cells_gives_them_to_a_fiftieth_texel() {
     for (width, height, period) in [(96, 80, 16), (80, 64, 13), (100, 90, 16), (128, 128, 16)] {
         let tiles =
             Raster::from_fn(width, height, |x, y| if x % period < 2 || y % period < 2 { 0.2 } else { 0.7 });

@@ -112,7 +112,7 @@ fn a_map_that_tiles_shows_two_to_five_repeats_a_side() {
 /// Of few cells under much noise too few waves are left to tell a pattern from chance: none is
 /// claimed rather than a wrong one.
 #[test]
-fn nine_cells_and_more_are_found_under_noise_and_fewer_are_not_misread() {
+fn nine_cells_are_found_under_noise_and_fewer_not_misread() {
     let many =
         LATTICES.map(|[a, b]| ((a[0] * b[1] - a[1] * b[0]).abs() < (SIDE * SIDE) as f64 / 8.5, [a, b]));
     let many: Vec<_> = many.into_iter().filter(|(many, _)| *many).map(|(_, basis)| basis).collect();

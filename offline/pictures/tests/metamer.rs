@@ -24,7 +24,7 @@ fn pairs() -> ([(&'static str, Raster); 4], Raster) {
 }
 
 #[test]
-fn sub_bands_of_the_default_are_within_two_hundredths_and_one_pass_is_not() {
+fn sub_bands_are_within_two_hundredths_and_one_pass_is_not() {
     let (originals, reference) = pairs();
     let (mut single_sum, mut default_sum) = (0.0, 0.0);
     for ((name, original), default) in originals.iter().zip(&*DEFAULTS) {
@@ -145,7 +145,7 @@ fn unequal_sizes_match_and_the_result_has_the_size_of_the_original() {
 }
 
 #[test]
-fn a_reference_at_half_the_scale_is_brought_to_the_texels_of_the_original() {
+fn a_reference_at_half_scale_is_resampled_to_the_originals_texels() {
     // The same surface on texels half as large: matched to it, the original hardly changes.
     let fine = fractal(256, 5.0, 1.0, 22);
     let (low, high) = fine.range();
@@ -159,7 +159,7 @@ fn a_reference_at_half_the_scale_is_brought_to_the_texels_of_the_original() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_and_images_too_small_are_refused_by_name() {
+fn numbers_not_finite_and_tiny_images_are_refused_by_name() {
     let good = ground(64);
     let mut bad = good.clone();
     bad.values[5] = f64::NAN;
@@ -192,7 +192,7 @@ fn plateaus() -> Raster {
 }
 
 #[test]
-fn references_of_plateaus_and_of_black_and_white_are_met_in_bands_and_heights_and_never_left() {
+fn references_of_plateaus_are_met_in_bands_and_heights() {
     let original = fractal(256, 3.6, 1.0, 42);
     for (name, reference) in [("plateaus", plateaus()), ("grid", grid(256)), ("perforated", perforated())] {
         let made = made(&original, &reference, MetamerOptions::default().method);
@@ -248,7 +248,7 @@ fn wide_plateaus_and_a_cut_that_does_not_tile_are_met() {
 }
 
 #[test]
-fn nothing_of_the_reference_s_arrangement_is_taken_where_the_original_s_will_do_or_none_may() {
+fn the_references_arrangement_is_taken_only_where_allowed() {
     assert!(DEFAULTS.iter().all(|made| made.borrowed == 0.0));
     let original = fractal(256, 3.6, 1.0, 42);
     let options = MetamerOptions { borrow: 0.0, ..Default::default() };
@@ -291,7 +291,7 @@ fn ramp_and_original() -> (Raster, Raster) {
 }
 
 #[test]
-fn a_reference_at_another_scale_that_does_not_tile_leaks_no_seam_into_the_metamer() {
+fn a_reference_that_does_not_tile_leaks_no_seam() {
     let (ramp, original) = ramp_and_original();
     for scale in [2.0, 1.0, 0.7] {
         let options = MetamerOptions { scale, ..Default::default() };
@@ -304,7 +304,7 @@ fn a_reference_at_another_scale_that_does_not_tile_leaks_no_seam_into_the_metame
 }
 
 #[test]
-fn an_original_that_does_not_tile_gets_no_seam_from_a_reference_that_does() {
+fn an_original_without_tiling_gets_no_seam_from_its_reference() {
     let whole = fractal(256, 3.2, 1.0, 44);
     let cut = Raster::from_fn(150, 110, |x, y| whole.at(x, y) + 0.004 * x as f64);
     let made = made(&cut, &fractal(256, 3.0, 1.0, 45), MetamerOptions::default().method);
@@ -316,7 +316,7 @@ fn an_original_that_does_not_tile_gets_no_seam_from_a_reference_that_does() {
 }
 
 #[test]
-fn both_without_tiling_keep_the_original_s_borders_and_the_reference_s_heights() {
+fn both_without_tiling_keep_original_borders_and_reference_heights() {
     let (ours, theirs) = (fractal(256, 3.2, 1.0, 44), fractal(256, 2.8, 1.0, 46));
     let cut = |from: &Raster, tilt: f64| {
         Raster::from_fn(150, 120, |x, y| 0.5 * from.at(x, y) + tilt * (x as f64 + 0.5 * y as f64) / 200.0)

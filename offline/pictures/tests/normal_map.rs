@@ -11,7 +11,7 @@ use normals::{normal_map, relative_error};
 use surfaces::{correlation, fractal, known_surfaces};
 
 #[test]
-fn heights_of_8_bit_maps_are_within_six_thousandths_whatever_made_the_map() {
+fn heights_of_8_bit_maps_are_within_six_thousandths() {
     for (name, surface) in known_surfaces() {
         for derivative in DERIVATIVES {
             for green in [Green::OpenGl, Green::DirectX] {

@@ -55,7 +55,7 @@ fn check(what: &str, made: &NormalMapHeights, truth: (&Raster, Truth), least_r: 
 }
 
 #[test]
-fn steep_edges_in_resized_maps_are_not_taken_for_what_sobel_does_not_see() {
+fn steep_edges_in_resized_maps_are_not_sobels_blindness() {
     let surface = studs(512);
     for green in [Green::OpenGl, Green::DirectX] {
         for derivative in [Derivative::Exact, Derivative::Central] {
@@ -110,7 +110,7 @@ fn perforated(n: usize) -> Raster {
 }
 
 #[test]
-fn upright_walls_saved_as_jpeg_give_no_short_waves_that_are_not_there() {
+fn upright_walls_saved_as_jpeg_give_no_short_waves() {
     let surface = perforated(512);
     let map = normal_map(&slopes(&surface, Derivative::Exact), Green::OpenGl);
     for quality in [75, 85] {
@@ -149,7 +149,7 @@ fn baked(surface: &Raster) -> ([Raster; 3], Raster) {
 }
 
 #[test]
-fn walls_between_flat_places_are_no_stronger_than_a_height_map_shows_them() {
+fn walls_between_flat_places_are_as_strong_as_height_maps() {
     // Distances in texels of the baked map: round holes in rows, panels with grooves, discs of
     // three heights.
     let at = |i: usize| 0.25 * i as f64;
@@ -222,7 +222,7 @@ fn clean_maps_with_steep_edges_still_tell_their_derivative() {
 }
 
 #[test]
-fn displacement_maps_of_others_come_back_from_normals_that_were_halved_and_saved_as_jpeg() {
+fn others_displacement_maps_return_from_halved_jpeg_normals() {
     let displacement = "textures/MetalWalkway006_1K-PNG_Displacement.png";
     let Some(file) = asperity_evidence::corpus::corpus(displacement) else { return };
     let heights = load_channel(file, Channel::Luma).unwrap().raster;

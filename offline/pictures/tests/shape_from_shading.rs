@@ -47,7 +47,7 @@ fn known_surfaces() -> Vec<(&'static str, Raster)> {
 }
 
 #[test]
-fn known_heights_are_found_better_than_by_tsai_and_shah_at_every_slant() {
+fn known_heights_are_found_better_than_by_tsai_and_shah() {
     for (name, surface) in known_surfaces() {
         for slant_deg in [10.0_f64, 20.0, 30.0, 45.0, 60.0] {
             let light = Light::at(slant_deg.to_radians(), -2.2).unwrap();
@@ -90,7 +90,7 @@ fn the_first_step_of_tsai_and_shah_is_the_negative_image() {
 }
 
 #[test]
-fn a_light_is_found_to_a_few_degrees_or_said_not_to_be_there() {
+fn a_light_is_found_to_a_few_degrees_or_reported_missing() {
     for (seed, tilt) in [(51, -1.0), (52, -1.57), (53, -2.4)] {
         let surface = fractal(128, 4.5, 1.0, seed);
         let power = slopes(&surface, Derivative::Exact).power();
@@ -157,7 +157,7 @@ fn half_the_contrast_is_half_the_height() {
 }
 
 #[test]
-fn light_from_the_viewer_is_refused_where_slopes_are_asked_for_and_told_otherwise() {
+fn light_from_the_viewer_is_refused_where_slopes_are_wanted() {
     let image = fractal(64, 3.5, 1.0, 62);
     for light in [Light::OVERHEAD, Light::at(0.1, 1.0).unwrap()] {
         let refused = shape_by(Method::Integrable(5), &image, light, |_| {}).unwrap_err();
@@ -168,7 +168,7 @@ fn light_from_the_viewer_is_refused_where_slopes_are_asked_for_and_told_otherwis
 }
 
 #[test]
-fn a_flat_sheet_scratched_in_one_direction_is_not_lit_from_a_side() {
+fn a_flat_sheet_scratched_one_way_is_not_lit_from_a_side() {
     // Bright scratches, most of them within 30° of one direction: their power goes as cos² of the
     // angle, as a light's would.
     let mut rng = asperity_dsp::rng::Rng::new(81);

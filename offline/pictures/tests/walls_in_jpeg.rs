@@ -49,7 +49,7 @@ fn felt_m(photograph: &Photograph, jpeg_divisor: f64) -> f64 {
 }
 
 #[test]
-fn a_wall_in_a_jpeg_is_not_felt_whatever_its_quality_and_noise() {
+fn a_wall_in_a_jpeg_is_not_felt_at_any_quality() {
     for (quality, noise) in [(75, 0.8), (80, 2.5), (85, 1.5), (90, 3.0)] {
         let wall = photographed(quality, noise, |_, _| 0.0);
         let (felt, before) = (felt_m(&wall, wall.jpeg_divisor), felt_m(&wall, 0.0));

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stroke_lasts_as_long_as_its_sharpness_says_and_lowers_the_envelope() {
+    fn a_stroke_lasts_by_its_sharpness_and_lowers_the_envelope() {
         for (frequency, samples) in [(0.0, 291), (1.0, 96)] {
             let stroke = Some(Emphasis { amplitude: 1.0, frequency });
             let plain = rendered(&flat(0.4, 1.0, None), &Device::quest(), 8000.0);

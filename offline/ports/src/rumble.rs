@@ -43,7 +43,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn a_low_hum_turns_the_heavy_motor_and_a_high_one_the_light() {
+    fn low_hum_turns_the_heavy_motor_and_high_hum_the_light() {
         let sine = |hz: f64| -> Vec<f64> {
             (0..8000).map(|n| 0.5 * (TAU * hz * f64::from(n) / 8000.0).sin()).collect()
         };

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_late_curve_acts_when_it_begins_and_is_held_behind_its_end() {
+    fn a_late_curve_acts_from_its_beginning_and_holds_its_end() {
         let mut track = Track::default();
         track.put(vec![(1.0, 0.2), (2.0, 0.4)]);
         track.put(vec![(3.0, 0.5)]);

@@ -41,7 +41,7 @@ fn taps_are_as_weak_and_as_sharp_as_the_curves_make_them() {
 }
 
 #[test]
-fn a_curve_before_the_first_event_is_no_fault_and_a_late_one_acts_when_it_begins() {
+fn an_early_curve_is_no_fault_and_a_late_one_acts_late() {
     let early = [
         event("Continuous", 0.2, r#","EventDuration":1"#),
         curve("Sharpness", 0.0, &[(0.0, 0.0), (0.4, 0.4)]),
@@ -62,7 +62,7 @@ fn a_curve_before_the_first_event_is_no_fault_and_a_late_one_acts_when_it_begins
 }
 
 #[test]
-fn a_single_parameter_is_a_step_and_a_ramp_of_intensity_bends_as_its_square() {
+fn a_parameter_is_a_step_and_an_intensity_ramp_its_square() {
     let step = r#"{"Parameter":{"ParameterID":"HapticIntensityControl","Time":0.5,"ParameterValue":0.5}}"#;
     let stepped = clip(&[event("Continuous", 0.0, r#","EventDuration":1"#), step.to_owned()]);
     assert_eq!((at(&stepped, 0.4).0, at(&stepped, 0.6).0), (1.0, 0.25));

@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn no_curve_of_an_ahap_has_more_than_16_points_and_no_event_lasts_more_than_30_s(clip in clips()) {
+    fn no_ahap_curve_exceeds_16_points_and_no_event_30_s(clip in clips()) {
         let files = ahap::write(&clip, None).unwrap();
         let file: serde_json::Value = serde_json::from_str(&files.main).unwrap();
         let mut ends_s = 0.0;
@@ -231,7 +231,7 @@ fn played(file: &str, time_s: f64) -> f64 {
 }
 
 #[test]
-fn a_slow_fade_is_as_strong_in_an_ahap_halfway_as_in_the_clip() {
+fn a_slow_fade_is_as_strong_in_an_ahap_halfway() {
     for (a, b) in [(0.0, 1.0), (1.0, 0.0), (0.02, 0.7), (0.9, 0.3), (0.5, 0.5), (0.0, 0.0004)] {
         let point = |time_s, amplitude| AmplitudePoint { time_s, amplitude, emphasis: None };
         let clip = Clip { amplitude: vec![point(0.0, a), point(1.0, b), point(3.0, b)], ..Clip::default() };
@@ -270,7 +270,7 @@ fn sounds_and_strokes_of_an_ahap_are_where_they_belong() {
 }
 
 #[test]
-fn a_curve_keeps_a_sine_of_500_hz_to_30_db_with_4000_points_and_lower_ones_with_fewer() {
+fn a_curve_keeps_a_500_hz_sine_to_30_db() {
     for (frequency_hz, points_per_s) in
         [(500.0, 4000.0), (487.3, 4000.0), (300.0, 4000.0), (150.0, 2000.0), (60.0, 1000.0)]
     {
@@ -292,7 +292,7 @@ fn a_curve_keeps_a_sine_of_500_hz_to_30_db_with_4000_points_and_lower_ones_with_
 }
 
 #[test]
-fn waves_and_transients_of_others_are_rendered_and_what_is_not_read_is_named() {
+fn others_waves_and_transients_are_rendered_and_the_rest_named() {
     let file = |bands: &str| {
         format!(
             r#"{{"timescale":1000,"perceptions":[{{"effect_library":[{{"id":7,"effect_type":"Basis","base_signal":"Sine","keyframes":[{{"relative_position":0,"amplitude_modulation":0.5,"frequency_modulation":100}},{{"relative_position":500,"amplitude_modulation":0.5,"frequency_modulation":100}}]}}],"channels":[{{"gain":2.0,"bands":[{bands}]}}]}}]}}"#

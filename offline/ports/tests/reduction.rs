@@ -108,7 +108,7 @@ fn a_sine_inside_the_range_comes_back_as_itself() {
 }
 
 #[test]
-fn what_is_too_strong_is_scaled_and_says_so_and_what_is_weak_stays_weak() {
+fn too_strong_frames_are_scaled_and_weak_ones_stay() {
     let wave = |peak: f64| -> Vec<f64> {
         (0..8000).map(|n| peak * (TAU * 120.0 * f64::from(n) / 8000.0).sin()).collect()
     };
@@ -125,7 +125,7 @@ fn what_is_too_strong_is_scaled_and_says_so_and_what_is_weak_stays_weak() {
 }
 
 #[test]
-fn whatever_comes_in_a_clip_that_keeps_the_rules_comes_out_or_one_line() {
+fn any_clip_that_keeps_the_rules_comes_out_or_one_line() {
     let mut rng = Rng::new(17);
     let device = Device::quest();
     for case in 0..40 {

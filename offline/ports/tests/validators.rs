@@ -117,7 +117,7 @@ fn metas_own_renderer_makes_of_a_clip_what_ours_does() {
 }
 
 #[test]
-fn mpegs_synthesiser_makes_of_a_curve_the_samples_it_was_written_from_not_one_late() {
+fn mpegs_synthesiser_returns_a_curves_own_samples() {
     let Some(synth) = tool("hjif-synth") else { return };
     let folder = folder("mpeg");
     let mut rng = Rng::new(29);

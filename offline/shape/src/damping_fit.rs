@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_law_is_found_again_although_a_fifth_of_the_modes_is_wrong() {
+    fn a_law_is_recovered_although_a_fifth_of_the_modes_is_wrong() {
         let truth = Damping { alpha_per_s: 4.0, eta: 8e-4, beta_s: 2e-9 };
         let modes: Vec<Mode> = (1..=40)
             .map(|i| {

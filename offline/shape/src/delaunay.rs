@@ -209,7 +209,7 @@ mod tests {
     use crate::volume_mesh::tet_volume_m3;
 
     #[test]
-    fn a_grid_of_points_is_filled_exactly_although_all_its_spheres_are_shared() {
+    fn a_grid_of_points_is_filled_exactly_despite_shared_spheres() {
         let mut points = Vec::new();
         for i in 0..5 {
             for j in 0..4 {

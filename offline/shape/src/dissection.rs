@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn every_node_comes_once_and_the_first_cut_of_a_cube_is_a_plane_that_comes_last() {
+    fn every_node_comes_once_and_a_cube_is_cut_by_a_plane() {
         let (nodes, pairs) = grid(8);
         let order = order(&nodes, &mut pairs.into_iter());
         let mut seen = order.clone();

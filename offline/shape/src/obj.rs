@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_before_the_first_point_and_lines_that_go_on_lose_nothing() {
+    fn early_marks_and_lines_that_continue_lose_nothing() {
         let text = b"\xef\xbb\xbfv 0 0 0\rv 1 \\\r 0 0\rv 1 1 0\rf 1 \\\r2 \\\r3\r";
         let (mesh, _) = parse(text).unwrap();
         assert_eq!(mesh.points, [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);

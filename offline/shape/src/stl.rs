@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn binary_files_are_read_even_when_they_begin_with_solid_and_refused_when_cut() {
+    fn binary_files_beginning_with_solid_are_read_and_cut_ones_refused() {
         let (mesh, _) = parse(&one_triangle()).unwrap();
         assert_eq!(mesh.points, [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0]]);
         let mut cut = one_triangle();

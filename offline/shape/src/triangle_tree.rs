@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_surface_winds_once_around_what_is_inside_and_a_leak_changes_little() {
+    fn a_closed_surface_winds_once_around_its_inside_despite_a_leak() {
         let mut triangles = octahedron();
         let tree = TriangleTree::new(&triangles);
         assert!((tree.winding([0.1, 0.2, -0.1]) - 1.0).abs() < 0.02);
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_point_lies_on_the_surface_and_a_ray_crosses_the_body() {
+    fn the_nearest_point_lies_on_the_surface_and_rays_cross_it() {
         let tree = TriangleTree::new(&octahedron());
         let near = tree.nearest([1.0, 1.0, 1.0]).unwrap();
         assert!(near.point.iter().all(|x| (x - 1.0 / 3.0).abs() < 1e-12), "{near:?}");

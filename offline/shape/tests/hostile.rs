@@ -35,7 +35,7 @@ fn joined(mut a: SurfaceMesh, b: &SurfaceMesh, by: [f64; 3]) -> SurfaceMesh {
 }
 
 #[test]
-fn inverted_mixed_doubled_leaky_and_loose_meshes_are_the_clean_body_and_say_what_was_mended() {
+fn damaged_meshes_are_the_clean_body_and_name_their_repairs() {
     let expected = made(Mesh::Surface(clean()), None).unwrap();
     let mut leaky = clean();
     leaky.triangles.pop();
@@ -157,7 +157,7 @@ fn needled() -> SurfaceMesh {
 }
 
 #[test]
-fn a_box_sealed_by_needles_is_the_box_in_any_order_of_its_triangles() {
+fn a_box_sealed_by_needles_is_the_box_in_any_order() {
     let expected = made(Mesh::Surface(clean()), None).unwrap();
     let mesh = needled();
     assert_eq!(mesh.triangles.len(), 20);
@@ -301,7 +301,7 @@ fn a_coarse_ball_of_curved_elements_has_the_balls_volume_and_pitch() {
 }
 
 #[test]
-fn a_concave_sheet_is_the_same_plate_from_whichever_corner_its_polygon_begins() {
+fn a_concave_sheet_is_one_plate_from_any_first_corner() {
     let corners = [[0.0, 0.0], [0.2, 0.0], [0.2, 0.1], [0.1, 0.1], [0.1, 0.2], [0.0, 0.2]];
     let points: String = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
     for first in 0..6 {
@@ -384,7 +384,7 @@ fn sponge(depth: u32) -> SurfaceMesh {
 
 /// Took 74 s of one processor to be refused for a surface that was not clean enough.
 #[test]
-fn a_sponge_of_more_corners_than_are_solved_is_refused_for_its_walls() {
+fn a_sponge_of_too_many_corners_is_refused_for_its_walls() {
     let ceramic = made(Mesh::Surface(sponge(1)), None).unwrap();
     assert!((ceramic.volume_m3 / (1e-3 * 20.0 / 27.0) - 1.0).abs() < 1e-3, "{}", ceramic.volume_m3);
     let error = made(Mesh::Surface(sponge(3)), None).unwrap_err();

@@ -57,7 +57,7 @@ fn obj(corner: impl Fn(u32) -> String, end: &str) -> String {
 }
 
 #[test]
-fn an_obj_counts_from_the_end_leaves_out_what_it_has_not_and_remarks_on_its_lines() {
+fn an_obj_counts_from_the_end_and_skips_missing_parts() {
     let of = |corner: &dyn Fn(u32) -> String, end: &str| is_the_box("a.obj", obj(corner, end).as_bytes());
     of(&|i| format!("{}//{}", i as i64 - 8, i as i64 - 8), "");
     of(&|i| format!("{}//", i + 1), "");
@@ -119,7 +119,7 @@ fn triangles() -> Vec<[[f64; 3]; 3]> {
 }
 
 #[test]
-fn an_stl_of_two_solids_or_with_solid_in_its_binary_header_is_read() {
+fn an_stl_of_two_solids_or_a_misleading_header_is_read() {
     let mut text = String::new();
     for (number, part) in triangles().chunks(6).enumerate() {
         _ = writeln!(text, "solid part {number}");
@@ -161,7 +161,7 @@ fn msh() -> String {
 }
 
 #[test]
-fn a_msh_without_physical_groups_whose_nodes_come_in_another_order_is_read() {
+fn a_msh_without_groups_and_with_unordered_nodes_is_read() {
     is_the_box("a.msh", msh().as_bytes());
     is_the_box("a.msh", msh().replace('\n', "\r\n").as_bytes());
     let error = read("a.msh", b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n1\n1 0 0 0 0 1\n");
@@ -203,7 +203,7 @@ fn bytes_of(points: &[[f64; 3]]) -> Vec<u8> {
 }
 
 #[test]
-fn a_gltf_without_indices_in_a_buffer_of_its_own_kind_is_read() {
+fn a_gltf_without_indices_in_its_own_buffer_is_read() {
     let corners = triangles().concat();
     let buffer = bytes_of(&corners);
     let positions = "{\"bufferView\":0,\"componentType\":5126,\"count\":36,\"type\":\"VEC3\",\
@@ -306,7 +306,7 @@ fn what_a_download_left_in_place_of_a_mesh_is_named() {
 
 /// Refused for "walls of 1.4 mm": a cube one corner of which one triangle misses by 4 %.
 #[test]
-fn a_cube_that_gapes_at_a_corner_is_refused_with_what_was_closed() {
+fn a_cube_gaping_at_a_corner_is_refused_with_its_closures() {
     let mut mesh = SurfaceMesh::default();
     for corners in triangles() {
         let first = mesh.points.len() as u32;

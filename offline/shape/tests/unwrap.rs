@@ -98,7 +98,7 @@ fn a_sheet_that_can_be_laid_flat_is_laid_flat() {
 }
 
 #[test]
-fn curved_sheets_lie_at_the_least_of_either_functional_and_nothing_is_turned_over() {
+fn curved_sheets_reach_the_least_energy_without_flips() {
     for (name, mesh) in [("saddle", sheet(20, saddle)), ("half sphere", sheet(16, half_sphere))] {
         let made = unwrap(&mesh, Method::Energy(PHI)).unwrap();
         println!("{name}: {:?}", (made.energy, made.flipped, made.area_distortion));

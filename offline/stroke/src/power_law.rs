@@ -193,7 +193,7 @@ mod tests {
 
     // The engine's own noise, its octaves weighed for a tip.
     #[test]
-    fn the_slope_of_the_ground_is_found_under_a_tip_within_two_standard_errors() {
+    fn the_grounds_slope_is_found_under_a_tip_within_two_errors() {
         let field = FractalNoise::new(5);
         for roughness in [0.0, 0.3, 0.6, 1.0] {
             for tip_radius_m in [0.0, 0.4e-3, 1.6e-3, 3e-3] {
@@ -230,7 +230,7 @@ mod tests {
     // Long waves beyond 10 mm are flat, and a stroke of few seconds tells each third octave to a
     // decibel only.
     #[test]
-    fn flat_long_waves_are_not_put_down_to_the_slope_of_matte_ground_under_a_tip() {
+    fn flat_long_waves_are_not_taken_for_a_slope_under_tips() {
         let field = FractalNoise::new(5);
         for tip_radius_m in [1.6e-3, 3e-3] {
             let weights = OctaveWeights::new(&Relief {

@@ -42,7 +42,7 @@ fn ground_without_a_line_shows_none() {
 }
 
 #[test]
-fn a_speed_that_wanders_untold_is_followed_by_a_strong_line_and_named_by_a_weak_one() {
+fn a_wandering_speed_is_followed_by_strong_lines_and_reported() {
     for seed in 700..704 {
         let (amplitude_m, found) = read(6.0, 1e-3, seed, 0.05, false);
         let line = found.lines.first().unwrap_or_else(|| panic!("no line, {found:?}"));

@@ -31,7 +31,7 @@ fn errors(made: &Made, options: &Options) -> (f64, Vec<(f64, f64)>) {
 }
 
 #[test]
-fn octaves_and_slope_of_a_made_ground_come_back_within_their_told_errors() {
+fn made_octaves_and_slope_return_within_their_stated_errors() {
     let mut rng = Rng::new(23);
     let (mut all, mut slopes) = (Vec::new(), Vec::new());
     for seed in 300..316 {
@@ -54,7 +54,7 @@ fn octaves_and_slope_of_a_made_ground_come_back_within_their_told_errors() {
 }
 
 #[test]
-fn a_constant_of_the_probe_that_is_a_fifth_off_costs_no_octave_more_than_its_told_error() {
+fn a_probe_constant_off_by_a_fifth_stays_within_the_stated_error() {
     let made = Made { alpha: 2.0, seed: 41, ..Made::default() };
     let right = errors(&made, &options()).1;
     for constant in 0..3 {

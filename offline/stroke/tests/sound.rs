@@ -30,7 +30,7 @@ fn ring(hz: f64) -> Complex<f64> {
 }
 
 #[test]
-fn a_stroke_that_is_heard_is_read_within_three_decibels_where_a_body_rings() {
+fn a_sounding_stroke_is_read_within_3_db_on_ringing_bodies() {
     let mut options = options();
     let mode = |&(frequency_hz, decay_per_s, amplitude): &(f64, f64, f64)| Mode {
         frequency_hz,

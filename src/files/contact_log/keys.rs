@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn the_document_has_every_key_of_an_event_and_says_which_are_needed() {
+    fn the_document_names_every_key_of_an_event() {
         for (name, begins) in
             [("begin", "`begin`: a contact lands."), ("impact", "`impact`: a rigid striker hits a body.")]
         {

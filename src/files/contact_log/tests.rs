@@ -62,7 +62,7 @@ fn time_running_backwards_is_refused_with_its_line() {
 }
 
 #[test]
-fn a_key_that_no_event_knows_is_refused_with_its_line_and_the_key_that_was_meant() {
+fn an_unknown_key_is_refused_with_line_and_likely_key() {
     let told = |text: &str| ContactLog::parse(text, "log").unwrap_err().to_string();
     let line =
         r#"{"t":0.0,"event":"move","contact":1,"uv":[0.1,0.5],"velocity":[0.1,0.0],"normal_force_n":1}"#;
@@ -81,7 +81,7 @@ fn a_key_that_no_event_knows_is_refused_with_its_line_and_the_key_that_was_meant
 }
 
 #[test]
-fn every_key_of_the_format_is_accepted_and_those_read_past_are_told() {
+fn every_key_of_the_format_is_accepted_and_unused_ones_reported() {
     let begin = r#"{"t":0,"event":"begin","version":1,"contact":1,"surface":"tiles","actuator":0,"uv":[0,0],"velocity_m_s":[0,0],
         "normal_force_n":1,"closing_m_s":0.1,"probe":"stylus","holder":"pen","at_m":[0,0,0],"depth_m":0.001,"gain":1,
         "importance":1,"direction":[0,0,1]}"#;
@@ -184,7 +184,7 @@ const IMPACT_SLIPS: [(&str, &str, &str); 8] = [
 ];
 
 #[test]
-fn a_slip_is_told_with_its_line_its_key_what_is_wrong_and_what_would_be_right() {
+fn a_slip_is_reported_with_line_key_cause_and_remedy() {
     let lines: Vec<&str> = LOG.lines().collect();
     let of_begin = SLIPS.iter().map(|slip| (lines[0], slip));
     let of_impact = IMPACT_SLIPS.iter().map(|slip| (lines[2], slip));
@@ -200,7 +200,7 @@ fn a_slip_is_told_with_its_line_its_key_what_is_wrong_and_what_would_be_right() 
 }
 
 #[test]
-fn an_unknown_name_and_a_missing_channel_are_told_with_the_line_of_the_text() {
+fn an_unknown_name_or_channel_is_reported_with_its_line() {
     let text = format!("{{\"version\":1}}\n\n{}", LOG.replace("\"tile\"", "\"tilee\""));
     let log = ContactLog::parse(&text, "log").unwrap();
     let told = log.check_names(&names()).unwrap_err();

@@ -296,7 +296,7 @@ fn excitation_is_a_word_or_a_list_of_exciters() {
 }
 
 #[test]
-fn a_tip_of_its_own_is_read_with_what_its_preset_says_and_a_part_of_one_is_refused() {
+fn a_tip_starts_from_its_preset_and_a_part_is_refused() {
     let read = |keys: &str| SceneFile::parse(&format!("[probe]\n{keys}"), Path::new("s.toml"));
     let probe = |keys: &str| read(keys).unwrap().probe;
     let steel = probe("preset = \"stylus\"\ntip_material = \"steel\"\nasperity_radius_m = 2e-5");

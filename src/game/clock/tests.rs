@@ -12,7 +12,7 @@ fn offline_a_stamp_is_its_own_sample() {
 }
 
 #[test]
-fn a_stamp_written_as_a_time_is_read_back_as_the_same_stamp() {
+fn a_stamp_written_as_a_time_is_read_back_equal() {
     let mut rng = asperity_dsp::rng::Rng::new(5);
     for rate in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
         for _ in 0..10_000 {
@@ -100,7 +100,7 @@ fn live_eight_ticks_at_once_keep_their_distance_and_tie_nothing_anew() {
 }
 
 #[test]
-fn after_a_reset_the_next_stamp_holds_at_the_next_sample_and_the_rest_exactly() {
+fn after_a_reset_the_next_stamp_holds_at_the_next_sample() {
     let mut clock = Clock::new(ClockMode::Exact, 48_000.0);
     clock.stamp(100.0, 0, false);
     clock.reset(9_600);
@@ -126,7 +126,7 @@ fn live_strikes_that_come_late_and_at_once_keep_their_distance() {
 }
 
 #[test]
-fn live_a_game_that_stalls_or_skips_is_tied_anew_and_stays_in_order() {
+fn a_live_game_that_stalls_or_skips_stays_in_order() {
     let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
     clock.stamp(0.0, 0, false);
     let tied = |sample| Stamped { stamp: Stamp::at(sample), jumped: true, repaced: false };

@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ground_runs_on_under_a_wheel_on_the_spot_as_fast_as_it_slips() {
+    fn the_ground_runs_under_a_spinning_wheel_as_it_slips() {
         let mut spin = Spin::default();
         for n in 0..60 {
             let t = f64::from(n) / 60.0;

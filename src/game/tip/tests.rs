@@ -91,7 +91,7 @@ fn the_proxy_follows_as_a_critically_damped_mass_does() {
 }
 
 #[test]
-fn a_resting_hand_presses_with_stiffness_times_depth_and_never_beyond_the_bound() {
+fn a_resting_hand_presses_with_stiffness_times_depth_within_bounds() {
     for (rate_hz, depth_m) in [(60.0, 1e-3), (90.0, 5e-3), (120.0, 0.02), (72.0, 0.2)] {
         let mut tip = tip(&[table()]);
         let mut rng = Rng::new(3);
@@ -165,7 +165,7 @@ fn no_hand_goes_through_a_thin_plate() {
 }
 
 #[test]
-fn after_a_hitch_or_a_jump_nothing_hits_harder_than_at_rest_or_moves_faster_than_a_hand() {
+fn after_a_hitch_nothing_hits_harder_or_moves_faster_than_a_hand() {
     for hitch_s in [0.05, 0.1, 0.3] {
         for (jump_m, tracker_stops) in [(0.0, false), (0.0, true), (0.15, false), (0.15, true)] {
             let mut tip = tip(&[table()]);
@@ -195,7 +195,7 @@ fn after_a_hitch_or_a_jump_nothing_hits_harder_than_at_rest_or_moves_faster_than
 }
 
 #[test]
-fn a_finger_that_leaves_at_an_edge_ends_there_and_one_that_comes_beside_it_does_not_touch() {
+fn a_finger_past_an_edge_ends_there_and_one_beside_never_touches() {
     let mut tip = tip(&[table()]);
     let steps = run(&mut tip, 90.0, 3.0, |t| [0.2 + 0.1 * t, 0.1, (0.01 - 0.1 * t).max(-0.005)]);
     assert_eq!(steps.iter().filter(|step| matches!(step, TipStep::End(0))).count(), 1);
@@ -212,7 +212,7 @@ fn tip_over_the_table() -> Tip {
 }
 
 #[test]
-fn a_hand_that_comes_back_from_a_lost_track_has_not_passed_the_table() {
+fn a_hand_back_from_a_lost_track_has_not_passed_the_table() {
     let mut tip = tip(&[table()]);
     run(&mut tip, 90.0, 0.3, |t| [0.2, 0.1, 0.3 - 0.1 * t]);
     let step = tip.step(1.0 / 90.0, [0.2, 0.1, -0.3]).unwrap();

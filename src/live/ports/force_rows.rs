@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tone_within_a_quarter_of_the_rate_is_itself_and_one_beyond_two_thirds_is_gone() {
+    fn a_tone_below_the_band_edge_passes_and_one_beyond_vanishes() {
         for (rate_hz, sample_rate_hz) in [(1000.0, 44_100.0), (5000.0, 22_050.0), (5000.0, 192_000.0)] {
             let worst = |cycles: f64, aside: bool| {
                 let tone = |t: f64| (std::f64::consts::TAU * cycles * rate_hz * t + 0.3).sin();
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn no_row_beside_a_jump_is_beyond_the_cap_and_none_before_a_touch_is_other_than_0_n() {
+    fn no_row_beside_a_jump_passes_the_cap() {
         for (rate_hz, sample_rate_hz) in [(1000.0, 44_100.0), (5000.0, 22_050.0), (2000.0, 96_000.0)] {
             // It comes down at 0.1 s on what gives 20 N at most, and leaves from 0.3 to 0.4 s.
             let down = |t: f64| (0.1..0.3).contains(&t) || t >= 0.4;
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hand_feels_of_several_contacts_is_no_more_than_its_device_gives() {
+    fn several_contacts_give_a_hand_no_more_than_its_device() {
         let mut rows = ForceRows::new(1000.0, 44_100.0, 2);
         let mut told = Vec::new();
         for cell in 0..40 {

@@ -21,7 +21,7 @@ fn assert_close(ours: &[f64], published: &[f64], within: f64) {
 }
 
 #[test]
-fn a_bar_is_the_timoshenko_bar_of_an_independent_program_within_a_hundredth() {
+fn a_bar_matches_an_independent_timoshenko_solver_within_a_hundredth() {
     // tests/independent/stock_modes.py: ω L² √(ρ A / (E I)) of a free bar 30 times as long as
     // thick.
     let exact = [22.283, 60.967, 118.24, 192.77, 283.2, 388.07, 505.86, 635.08, 774.34, 922.34];
@@ -32,7 +32,7 @@ fn a_bar_is_the_timoshenko_bar_of_an_independent_program_within_a_hundredth() {
 }
 
 #[test]
-fn a_slender_bar_has_the_roots_and_the_shapes_of_its_closed_form() {
+fn a_slender_bar_has_its_closed_forms_roots_and_shapes() {
     // Blevins, Formulas for natural frequency and mode shape: 4.730041, 7.853205, 10.995608.
     for (n, root) in [(1, 4.730_040_74), (2, 7.853_204_62), (3, 10.995_607_8), (4, 14.137_165_5)] {
         assert!((bending_root(n) - root).abs() < 1e-7, "{n}");
@@ -105,7 +105,7 @@ fn every_shape_of_every_material_is_a_model_the_engine_takes() {
 }
 
 #[test]
-fn a_steel_bar_of_twenty_centimetres_has_the_pitch_of_the_closed_form() {
+fn a_steel_bar_of_twenty_centimetres_has_its_closed_forms_pitch() {
     // f = 1.0279 h √(E/ρ) / L² for a free bar of thickness h (Fletcher and Rossing, The physics of
     // musical instruments, section 2.16).
     let lowest_hz = frequencies_hz(Stock::Bar, &Material::STEEL, 0.2)[0];
@@ -122,7 +122,7 @@ fn a_strike_at_a_node_leaves_that_mode_out() {
 }
 
 #[test]
-fn a_door_is_the_published_free_plate_and_hollow_things_ring_lower_than_solid_ones() {
+fn a_door_is_the_published_plate_and_hollow_things_ring_lower() {
     // Leissa, J. Sound Vib. 31 (1973), free plate with sides 5 : 2: ω a² √(ρ h / D) of the longer
     // side.
     let published = [21.643, 33.050, 60.137, 71.484, 117.45];

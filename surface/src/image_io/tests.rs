@@ -34,7 +34,7 @@ fn a_telephone_picture_is_turned_as_its_exif_says() {
 }
 
 #[test]
-fn a_file_of_another_kind_is_refused_by_its_name_and_told_what_to_convert_it_to() {
+fn a_file_of_another_kind_is_refused_with_its_name_and_converter() {
     for (bytes, kind, instead) in [
         (&b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"[..], "Radiance HDR", "EXR"),
         (b"\xabKTX 20\xbb\r\n\x1a\n", "KTX2", "PNG"),

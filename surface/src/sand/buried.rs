@@ -102,7 +102,7 @@ mod tests {
         Buried { at_m: [0.05, 0.03], top_m: 0.002, half_m: [0.008, 0.004], height_m: 0.004, hardness: 30.0 };
 
     #[test]
-    fn a_stone_falls_by_its_height_at_half_its_width_under_a_point() {
+    fn a_stone_under_a_point_ends_at_half_its_width() {
         let top_m = |u_m: f64, v_m: f64| STONE.met([u_m, v_m], 0.0, 0.0).top_m;
         assert!((top_m(0.05, 0.03) - 0.002).abs() < 1e-15);
         assert!((top_m(0.058, 0.03) - 0.006).abs() < 1e-15 && (top_m(0.05, 0.026) - 0.006).abs() < 1e-15);

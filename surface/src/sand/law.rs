@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn force_is_continuous_at_the_surface_and_at_layers_and_depth_inverts_it() {
+    fn force_is_continuous_at_layers_and_depth_inverts_it() {
         let mut law = SandLaw { exponent_per_m: 30.0, wetness: 0.3, ..SandLaw::default() };
         law.layers[0] = Some(Layer { from_m: 0.002, hardness: 4.0 });
         law.layers[1] = Some(Layer { from_m: 0.005, hardness: 0.5 });
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn over_a_stone_the_force_is_continuous_at_its_top_depth_inverts_it_and_its_flank_pushes_outwards() {
+    fn over_a_stone_force_is_continuous_and_its_flank_pushes_outwards() {
         let stone =
             Buried { at_m: [0.05; 2], top_m: 0.002, half_m: [0.008; 2], height_m: 0.004, hardness: 30.0 };
         let law = SandLaw {

@@ -134,7 +134,7 @@ mod tests {
     ];
 
     #[test]
-    fn slopes_are_those_of_the_values_and_the_mean_is_the_one_that_unresolved_octaves_leave() {
+    fn slopes_are_those_of_the_values() {
         let lattice = GradientNoise3d::new(3);
         let mut rng = Rng::new(9);
         for kind in KINDS {
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_point_is_the_nearest_of_all_that_a_search_of_seven_cells_a_side_finds() {
+    fn the_nearest_point_is_that_of_a_wide_search() {
         let lattice = GradientNoise3d::new(5);
         let mut rng = Rng::new(2);
         for _ in 0..3_000 {

@@ -5,7 +5,7 @@ use crate::link::ring::channel;
 use std::thread;
 
 #[test]
-fn boxes_sent_across_arrive_whole_and_in_order_however_full_the_ring_is() {
+fn boxes_sent_across_arrive_whole_and_in_order() {
     let (mut sender, mut receiver) = channel::<Box<[u64; 4]>>(8);
     assert_eq!((sender.capacity(), sender.free()), (8, 8));
     let sending = thread::spawn(move || {

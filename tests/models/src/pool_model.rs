@@ -31,7 +31,7 @@ fn rounds(helpers: usize, rounds: &[u32]) {
 }
 
 #[test]
-fn a_block_rendered_by_several_threads_is_whole_and_the_threads_end_with_it() {
+fn a_block_rendered_by_several_threads_is_whole_and_ends_with_them() {
     let one = schedules(3, || rounds(1, &[2]));
     let two = schedules(2, || rounds(2, &[3]));
     println!("{one} and {two} schedules");

@@ -34,7 +34,7 @@ fn race(records: usize, words: usize, writes: u32, looks: usize) {
 }
 
 #[test]
-fn a_port_read_while_it_is_written_gives_whole_records_and_counts_the_rest() {
+fn a_port_read_while_written_gives_whole_records() {
     let of_one = schedules(2, || race(2, 1, 5, 2));
     let of_two = schedules(2, || race(2, 2, 4, 2));
     println!("{of_one} and {of_two} schedules");
@@ -43,7 +43,7 @@ fn a_port_read_while_it_is_written_gives_whole_records_and_counts_the_rest() {
 
 /// Every word is a piece of its own here: a claim is a whole ring ahead of what was published.
 #[test]
-fn a_port_read_while_a_longer_block_passes_through_it_stands_within_what_was_published() {
+fn a_port_read_during_a_longer_block_stays_within_the_published() {
     let count = schedules(3, || {
         let (mut writer, mut reader) = ring(1, 1);
         let writing = thread::spawn(move || writer.write(1..6));
@@ -61,7 +61,7 @@ fn a_port_read_while_a_longer_block_passes_through_it_stands_within_what_was_pub
 }
 
 #[test]
-fn a_port_that_nobody_reads_any_more_says_so_and_is_left_alone() {
+fn a_port_without_a_reader_reports_so_and_is_left_alone() {
     schedules(3, || {
         let (mut writer, reader) = ring(2, 1);
         let reading = thread::spawn(move || drop(reader));

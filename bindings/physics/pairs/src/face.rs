@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_is_as_long_as_its_points_lie_apart_along_the_stroke() {
+    fn a_face_is_as_long_as_its_points_along_the_stroke() {
         let book = box_on([0.1, 0.01]);
         assert!((book.length_m(3.0 * Vec3::X) - 0.2).abs() < 1e-6);
         assert!((book.length_m(Vec3::Z) - 0.02).abs() < 1e-6);

@@ -126,21 +126,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_balls_meet_with_half_their_radius_a_ball_and_a_plane_with_the_balls_and_edges_with_theirs() {
+    fn two_balls_meet_with_half_their_radius() {
         assert_eq!(radius_m([Some(0.03), Some(0.03)]), 0.015);
         assert_eq!(radius_m([None, Some(0.03)]), 0.03);
         assert_eq!(radius_m([None, None]), EDGE_RADIUS_M);
     }
 
     #[test]
-    fn a_barrel_on_its_side_has_its_own_radius_and_none_on_its_end() {
+    fn a_barrel_on_its_side_has_its_radius_and_on_end_none() {
         let radius_m = |normal| axis_radius_m(Vec3::X, Vec3::ZERO, Vec3::new(0.4, -0.3, 0.0), normal);
         assert!((radius_m(Vec3::Y).unwrap() - 0.3).abs() < 1e-7);
         assert_eq!(radius_m(Vec3::X), None);
     }
 
     #[test]
-    fn a_rod_struck_at_its_end_is_as_mobile_as_a_quarter_of_its_mass() {
+    fn a_rod_struck_at_its_end_moves_as_a_quarter_mass() {
         // 1 kg, 1 m: I = 1/12 about its centre, across.
         let mobility = mobility_per_kg(Vec3::new(0.5, 0.0, 0.0), Vec3::Y, |v| v, |turn| turn * 12.0);
         assert!((mobility - 4.0).abs() < 1e-6, "{mobility}");

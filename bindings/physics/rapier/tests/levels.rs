@@ -102,6 +102,6 @@ fn sixty_things_that_drop_without_a_gain_need_next_to_no_limiter() {
 }
 
 #[test]
-fn sixty_things_that_drop_and_then_slide_or_roll_stay_within_full_scale_and_most_without_a_limiter() {
+fn sixty_dropped_things_stay_within_full_scale() {
     assert!(within(true) >= 54);
 }

@@ -116,7 +116,7 @@ fn ball(radius_m: f32, mass_kg: f32, restitution: f32) -> ColliderBuilder {
 }
 
 #[test]
-fn a_dropped_ball_strikes_once_a_bounce_with_its_own_mass_and_slower_each_time() {
+fn a_dropped_ball_strikes_once_a_bounce_ever_more_slowly() {
     let mut world = World::new();
     world.insert(at(0.0, 0.52, 0.0), ball(0.02, 0.1, 0.7), Thing::of(Material::STEEL));
     world.run(3.0);
@@ -139,7 +139,7 @@ fn a_dropped_ball_strikes_once_a_bounce_with_its_own_mass_and_slower_each_time()
 }
 
 #[test]
-fn a_rod_that_lands_on_one_end_strikes_with_a_quarter_of_its_mass() {
+fn a_rod_landing_on_one_end_strikes_with_a_quarter_mass() {
     let mut world = World::new();
     // 1 m long, 5 mm thick, tilted by 0.1: only one end lands.
     let tilted = at(0.0, 0.4, 0.0).rotation(Vector::new(0.0, 0.0, 0.1));
@@ -252,7 +252,7 @@ fn a_rolling_ball_rolls_and_takes_its_place_of_contact_along() {
 }
 
 #[test]
-fn a_finger_lands_as_a_contact_and_a_held_tool_strikes_and_is_felt() {
+fn a_finger_lands_as_a_contact_and_a_tool_strikes() {
     let mut world = World::new();
     let down = |x: f32| at(x, 0.05, 0.0).linvel(Vector::new(0.0, -0.5, 0.0)).lock_rotations();
     world.insert(down(-0.5), ball(0.008, 0.02, 0.0), Thing::of(Material::NAIL).felt_by(ChannelId(0)));
@@ -280,7 +280,7 @@ fn a_finger_lands_as_a_contact_and_a_held_tool_strikes_and_is_felt() {
 }
 
 #[test]
-fn the_events_of_a_heap_of_tumbling_things_are_consistent_and_none_stays_behind() {
+fn the_events_of_tumbling_things_are_consistent() {
     let mut world = World::new();
     let mut rng = asperity_dsp::rng::Rng::new(11);
     let mut bodies = Vec::new();
@@ -314,7 +314,7 @@ fn the_events_of_a_heap_of_tumbling_things_are_consistent_and_none_stays_behind(
 }
 
 #[test]
-fn a_mesh_gives_the_coordinates_of_its_own_vertices_and_a_forgotten_collider_ends() {
+fn a_mesh_gives_its_vertices_coordinates_and_a_removed_collider_ends() {
     let mut world = World::new();
     world.physics.gravity = Vector::new(0.0, -9.81, 0.0);
     let vertices = [[-1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 1.0]];

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_the_file_does_not_say_is_added_and_taken_out_again() {
+    fn a_number_missing_from_the_file_is_added_and_removed_again() {
         let mut turned = document();
         turned.set("surface.0", "micro_relief_m", &[2e-5]).unwrap();
         assert!(turned.text().contains("micro_relief_m = 0.00002"), "{}", turned.text());

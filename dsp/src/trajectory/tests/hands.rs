@@ -25,7 +25,7 @@ fn followed(mode: PathMode, motion: impl Fn(f64) -> [f64; 2], seconds: f64) -> V
 
 // A hand's 90 mm in 0.55 s: dead reckoning without the bend errs by 61 µm rms.
 #[test]
-fn a_hand_that_reaches_is_followed_to_a_few_micrometres_between_its_reports() {
+fn a_reaching_hand_is_followed_to_micrometres_between_reports() {
     for (mode, most_m) in [(PathMode::Extrapolate, 2e-6), (PathMode::BandLimited, 4e-6)] {
         let design = design(mode);
         let points = followed(mode, |t| reach(0.09, 0.55, t), 0.55);
@@ -59,7 +59,7 @@ fn beyond_a_stop(mode: PathMode, motion: impl Fn(f64) -> [f64; 2], stop_s: f64) 
 }
 
 #[test]
-fn a_finger_that_stops_dead_is_overrun_by_what_it_would_have_gone_until_the_next_report() {
+fn a_stopped_finger_overshoots_by_one_report_at_most() {
     let mut rng = Rng::new(11);
     for mode in [PathMode::Extrapolate, PathMode::BandLimited] {
         let mut worst = [0.0f64; 2];

@@ -43,7 +43,7 @@ fn with_hitch(report_hz: f64, hitch_s: f64) -> Vec<f64> {
 }
 
 #[test]
-fn after_a_hitch_of_the_game_the_path_neither_hurries_nor_steps_and_is_soon_where_the_finger_is() {
+fn after_a_hitch_the_path_neither_hurries_nor_steps() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {
         for report_hz in [30.0, 60.0, 90.0] {
             for hitch_s in [0.02, 0.04, 0.06, 0.1, 0.15, 0.2] {
@@ -62,7 +62,7 @@ fn after_a_hitch_of_the_game_the_path_neither_hurries_nor_steps_and_is_soon_wher
 
 /// A finger whose reports fail to come may stop, or turn.
 #[test]
-fn a_finger_that_stopped_or_turned_during_a_hitch_is_found_at_its_own_pace() {
+fn a_finger_that_turned_during_a_hitch_is_found_without_hurry() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {
         for (turned, hitch_s) in [(0.0, 0.1), (0.0, 0.2), (-1.0, 0.1), (-1.0, 0.2)] {
             let speed = 0.1;
@@ -95,7 +95,7 @@ fn a_finger_that_stopped_or_turned_during_a_hitch_is_found_at_its_own_pace() {
 }
 
 #[test]
-fn a_game_at_5_to_30_hz_does_not_hurry_at_its_first_reports() {
+fn a_game_at_5_to_30_hz_does_not_hurry_at_first() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {
         for report_hz in [5.0, 10.0, 20.0, 30.0] {
             for reported in [true, false] {
@@ -159,7 +159,7 @@ fn where_a_silent_game_is_too_far_gone_the_path_starts_afresh() {
 }
 
 #[test]
-fn a_game_that_reports_a_velocity_of_zero_for_a_finger_that_moves_is_not_believed() {
+fn a_velocity_of_zero_from_a_moving_finger_is_overruled() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {
         for speed in [0.02, 0.05, 0.1, 0.5] {
             let events: Vec<PathEvent> =

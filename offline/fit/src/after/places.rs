@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn strikes_on_a_plate_are_told_where_they_were_made_and_shapes_of_another_body_explain_little() {
+    fn strikes_on_a_plate_are_located_and_other_shapes_explain_little() {
         let (plate, mut rng) = (plate(), Rng::new(30));
         let (mut least, mut most) = (1.0_f64, f64::NEG_INFINITY);
         for _ in 0..6 {

@@ -150,14 +150,14 @@ mod tests {
     const CERAMIC: DampingLaw = DampingLaw { alpha_per_s: 6.0, beta_s: 1e-7 };
 
     #[test]
-    fn the_law_of_modes_made_by_a_law_is_that_law_in_spite_of_odd_modes() {
+    fn the_law_of_modes_is_found_despite_odd_modes() {
         let law = DampingLaw::of(&body(CERAMIC)).unwrap();
         assert!((law.alpha_per_s / 6.0 - 1.0).abs() < 0.03, "{law:?}");
         assert!((law.beta_s / 1e-7 - 1.0).abs() < 0.03, "{law:?}");
     }
 
     #[test]
-    fn twice_the_size_is_an_octave_lower_and_damped_as_the_law_has_it_there() {
+    fn twice_the_size_is_an_octave_lower_and_damped_by_law() {
         let modes = body(CERAMIC);
         let large = scale_size(&modes, 2.0);
         for (mode, large) in modes.iter().zip(&large).filter(|(m, _)| m.frequency_hz % 2000.0 != 600.0) {

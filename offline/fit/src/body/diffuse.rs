@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_of_modes_in_noise_that_the_struck_body_explains_has_no_table() {
+    fn modes_that_explain_the_struck_body_leave_no_table() {
         for floor in [1e-3, 1e-2, 1e-1] {
             let hiss = noise(2, 0.0);
             let modes: Vec<f64> = (0..44_100)

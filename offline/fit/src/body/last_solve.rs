@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn amplitudes_that_are_wrong_in_the_file_are_those_of_the_recording_after_the_solve() {
+    fn wrong_amplitudes_in_a_file_become_the_recordings() {
         let truth: Vec<Partial> =
             (0..6).map(|k| partial(0.05 * 1.6_f64.powi(k), 3e-4, 0.3 / f64::from(k + 1))).collect();
         let sound = synthesise(&truth, 20_000);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_began_softly_is_no_louder_when_it_is_struck_and_rings_on_alike() {
+    fn a_body_that_began_softly_rings_on_alike_when_struck() {
         // Twelve modes in step, faded in over 3 ms as a mallet does.
         let modes: Vec<Partial> =
             (0..12).map(|k| partial(0.02 * 1.35_f64.powi(k), 2e-4 * 1.4_f64.powi(k), 0.1)).collect();
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_amplitudes_explain_is_never_worse_than_silence_and_never_too_loud() {
+    fn what_no_amplitudes_explain_is_never_worse_than_silence() {
         // A sound that begins 1500 samples late, and its mode.
         let mut one = vec![partial(0.3, 1e-4, 50.0)];
         let mut sound = vec![0.0; 2000];

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_of_unknown_decays_becomes_one_mode_and_a_doublet_stays_two() {
+    fn a_crowd_of_unknown_decays_becomes_one_mode_a_doublet_stays() {
         let truth = [partial(1065.0, 0.8, 0.1)];
         let mut crowd: Vec<Partial> =
             (0..5).map(|k| partial(1064.6 + 0.2 * f64::from(k), 0.6 + 0.1 * f64::from(k), 0.02)).collect();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn amplitudes_that_are_worse_than_silence_are_solved_anew_even_of_a_sum_of_modes() {
+    fn amplitudes_worse_than_silence_are_solved_anew() {
         let truth = [partial(400.0, 0.5, 0.1), partial(1310.0, 0.3, 0.05)];
         let upside_down = truth.map(|p| Partial { c: -p.c, ..p }).to_vec();
         let (_, left) = solved(&truth, upside_down, true);

@@ -41,7 +41,7 @@ mod tests {
     use asperity_dsp::mode::Mode;
 
     #[test]
-    fn what_is_told_of_a_strike_is_what_ring_bank_and_first_samples_of_the_engine_play() {
+    fn reported_strikes_are_what_the_engine_plays() {
         let rate = 44_100.0;
         let modes = [(700.0, 8.0, 0.5, 0.3), (5200.0, 200.0, 0.3, 1.5), (9_000.0, 900.0, 0.4, -2.0)].map(
             |(frequency_hz, decay_per_s, amplitude, phase_rad)| Mode {

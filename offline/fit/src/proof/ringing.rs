@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mode_alone_in_noise_is_seen_when_its_parameters_could_be_told() {
+    fn a_lone_mode_in_noise_is_found_when_its_parameters_can_be() {
         // A relative standard deviation of 0.15 of the amplitude is an energy of 89 variances.
         let (mut tried, mut seen) = (0, 0);
         for leak in [1.0, 0.003, 0.0] {

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_is_over_where_the_recurrence_says_and_lasts_until_where_the_modes_say() {
+    fn a_push_ends_where_recurrence_and_modes_say() {
         for (contact_s, noise) in [(3e-4, 0.0), (7e-4, 1e-5), (1e-3, 1e-4), (3e-3, 1e-5)] {
             for (modes, seed) in [(6, 1), (24, 2)] {
                 let sound = struck(modes, contact_s, noise, seed);

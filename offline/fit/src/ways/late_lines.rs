@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quiet_line_that_falls_fast_and_outlasts_a_loud_attack_is_found() {
+    fn a_quiet_fast_line_is_found_after_a_loud_attack() {
         // It has fallen by 2.4 nepers when the late part begins, and lies 40 dB below the attack.
         let (attack, line) = (partial(900.0, 60.0, 1.0), partial(2300.0, 12.0, 0.01));
         let mut rng = asperity_dsp::rng::Rng::new(4);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_be_louder_at_the_onset_than_the_recording_is_no_mode_of_it() {
+    fn what_exceeds_the_recordings_onset_is_no_mode() {
         // A line that began only when the attack was over.
         let (attack, line) = (partial(900.0, 60.0, 0.02), partial(2300.0, 14.0, 1.0));
         let mut segment = synthesise(&[attack], 44_100);

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_that_begins_with_its_mallet_is_one_mode_and_keeps_its_decay() {
+    fn a_bar_that_begins_with_its_mallet_is_one_decaying_mode() {
         let bar = partial(1254.5, 3.4, 0.7, 0.1);
         assert_eq!(left(&[bar], &[partial(1255.2, 40.0, 0.15, -2.6)]), []);
         // Found in one stage: the same.

@@ -41,7 +41,7 @@ mod tests {
     use nalgebra::Complex;
 
     #[test]
-    fn a_quiet_partial_that_rings_long_is_kept_before_a_loud_one_of_the_attack() {
+    fn a_long_quiet_partial_is_kept_before_a_loud_short_one() {
         let partial = |omega, delta, c| Partial { omega, delta, c: Complex::new(c, 0.0) };
         let quiet = partial(0.3, 3e-5, 0.02);
         let mut partials = vec![

@@ -154,7 +154,7 @@ mod tests {
     use asperity_dsp::rng::Rng;
 
     #[test]
-    fn noise_on_one_frequency_in_nine_is_known_for_nine_times_as_strong() {
+    fn noise_on_a_ninth_of_the_frequencies_is_estimated_ninefold() {
         let mut rng = Rng::new(6);
         let frequencies: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
         let bands = Bands::new(&frequencies, &frequencies, 0.01);

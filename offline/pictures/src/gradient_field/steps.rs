@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_of_a_cubic_are_exact_and_those_of_a_wave_as_told() {
+    fn steps_of_a_cubic_are_exact_and_of_a_wave_as_stated() {
         let cubic = |x: f64| 0.3 * x - 0.2 * x * x + 0.05 * x * x * x;
         let slope = |x: f64| 0.3 - 0.4 * x + 0.15 * x * x;
         for n in [3, 4, 5, 9] {

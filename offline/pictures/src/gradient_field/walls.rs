@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_leave_long_waves_alone_and_take_the_root_of_what_steps_would_off_short_ones() {
+    fn walls_leave_long_waves_alone_and_weaken_short_ones() {
         for (omega, steps) in [(0.05, 1.0), (2.0, 1.0 / 1.0_f64.tan()), (2.6, 1.3 / 1.3_f64.tan())] {
             let [along] = Walls(1.0).axis(&[omega])[..] else { unreachable!("one frequency") };
             let found = gain(along, [0.0, 0.0]);

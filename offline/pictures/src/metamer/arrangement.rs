@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_arrangement_is_one_at_any_height_and_strangers_are_near_zero() {
+    fn the_same_arrangement_is_one_and_strangers_near_zero() {
         let a = noise(1);
         assert!((of(&a, &a.map(|v| 7.0 - 0.2 * v)) + 1.0).abs() < 1e-12);
         assert!((of(&a, &a) - 1.0).abs() < 1e-12 && of(&a, &noise(2)).abs() < 0.15);
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn every_shift_s_correlation_is_the_one_in_place_of_the_moved_surface() {
+    fn every_shifts_correlation_is_that_of_the_moved_surface() {
         let (a, b) = (noise(4), noise(5));
         let found = correlations(&a, &b);
         let [x, y] = found.shift_px;

@@ -229,7 +229,7 @@ mod tests {
     /// A diamond plate under rock at 1024² was 0.018 σ away by the samples its waves need, and
     /// 0.024 by all of them: the passes ended too early.
     #[test]
-    fn a_start_of_a_large_surface_is_judged_by_all_samples_as_the_result_is() {
+    fn the_start_of_a_large_surface_is_judged_by_all_samples() {
         let mut rng = Rng::new(17);
         let mut noise = |gain: f64| Raster::from_fn(272, 260, |x, _| (x % 9) as f64 + gain * rng.normal());
         let (reference, image) = (noise(0.5), noise(3.0));

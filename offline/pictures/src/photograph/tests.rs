@@ -10,7 +10,7 @@ fn shaded() -> GrayImage {
 }
 
 #[test]
-fn a_photographs_colour_is_known_at_8_and_16_bits_and_grey_has_none() {
+fn a_photographs_colour_is_known_at_8_and_16_bits() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     let colour = |image: DynamicImage| {

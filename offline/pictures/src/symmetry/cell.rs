@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_strict_pattern_is_steady_in_noise_and_light_and_a_drifting_one_is_not() {
+    fn a_strict_pattern_is_steady_and_a_drifting_one_is_not() {
         let lattice = Lattice { t1_px: [17.3, 2.1], t2_px: [-4.4, 21.7], confidence: 1.0 };
         let mut rng = asperity_dsp::rng::Rng::new(11);
         let mut seen = |noise: f64, light: f64, drift: f64| {

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_deepest_minima_of_a_grid_are_its_periods_to_a_tenth_of_a_texel() {
+    fn the_deepest_minima_of_a_grid_are_its_periods() {
         let turn = std::f64::consts::TAU;
         let (px, py) = (13.4, 17.7);
         let grid =
