@@ -259,9 +259,16 @@ impl Fields {
         if self.place.is_empty() { key.to_owned() } else { format!("{}: {key}", self.place) }
     }
 
-    /// An error for a key that must be there.
+    /// An error for a key that must be there; it names the one that stands in its place without
+    /// its unit or with another.
     pub fn missing(&self, key: &str, right: &str) -> FileError {
-        self.refuse(key, "is missing", format!("write {key} = {right}"))
+        let right = format!("write {key} = {right}");
+        let stem = key.rsplit_once('_').map_or(key, |(stem, _unit)| stem);
+        let mut unknown = self.table.keys().filter(|written| !self.accepted.contains(&written.as_str()));
+        match unknown.find(|written| written.starts_with(stem)) {
+            Some(written) => self.refuse(written, "unknown key", right),
+            None => self.refuse(key, "is missing", right),
+        }
     }
 
     /// The table as it is, before anything is taken out.

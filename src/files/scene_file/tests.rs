@@ -177,6 +177,13 @@ fn an_unknown_key_is_refused_with_its_place_and_the_accepted_ones() {
     );
     let line = refusal(&format!("{SURFACE}colour = 1"));
     assert!(line.starts_with("dir/scene.toml: surface 1 \"tiles\": colour: unknown key;"), "{line}");
+    // A needed key with another unit, or with none, is no missing key.
+    let surface = "[[surface]]\nname = \"s\"\nheight_m = 0.1\n";
+    for key in ["width_cm", "width"] {
+        let line = refusal(&format!("{surface}{key} = 14"));
+        assert!(line.ends_with(&format!(": {key}: unknown key; write width_m = a number")), "{line}");
+    }
+    assert!(refusal(surface).ends_with(": width_m: is missing; write width_m = a number"));
     assert!(line.contains("displacement") && line.contains("width_m") && line.contains("roughness_channel"));
 }
 
