@@ -201,7 +201,7 @@ parameters! {
             or(contact::FINGER_MASS_KG), from("assumed"), changes(Opened);
         CONTACT_STIFFNESS_N_M: "contact_stiffness_n_m", "N/m", limits::probe::CONTACT_STIFFNESS_N_M,
             "Stiffness of skin on surface", or(contact::CONTACT_STIFFNESS_N_M),
-            from("measured here: collisions sound and the contact forgets; at 1 N"), changes(Opened);
+            from("measured here: collisions sound and the contact is contractive; at 1 N"), changes(Opened);
         LEASH_M: "leash_m", "m", limits::probe::LEASH_M, "How far the finger may leave the surface",
             or(contact::LEASH_M), from("chosen"), changes(Opened);
         TIP_RADIUS_M: "tip_radius_m", "m", limits::probe::TIP_RADIUS_M, "Sphere that rides on the surface; 0 = a point",

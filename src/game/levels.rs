@@ -351,6 +351,6 @@ impl Levels {
 }
 
 fn too_loud(value: f64) -> AddError {
-    let expected = "a level at which no amplitude leaves ±1e9; tell the body's modes in other units";
+    let expected = "a level at which no amplitude leaves ±1e9; write the body's modes in other units";
     AddError::Design(asperity_dsp::DesignError { field: "level", value, expected })
 }

@@ -100,7 +100,7 @@ pub enum SilenceReason {
     },
     /// Reports beyond what the models reach counted as their limits.
     #[error(
-        "{count} events told a force above 1e4 N, a speed above 100 m/s or a mass above 1e4 kg, which counted as that; a game whose \
+        "{count} events reported a force above 1e4 N, a speed above 100 m/s or a mass above 1e4 kg, which counted as that; a game whose \
          unit is the centimetre has to report metres"
     )]
     Held {
@@ -130,7 +130,7 @@ pub enum SilenceReason {
     /// A probe leapt and came down hard, or was thrown off a crest; rendered as it is.
     #[error(
         "{count} times a probe that had left the ground came down with more than 30 times what pressed it, or was thrown so far that it \
-         presses more than was told; a probe that is softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
+         presses more than was reported; a probe that is softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
     )]
     Leapt {
         /// Number of times.

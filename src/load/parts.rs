@@ -62,7 +62,7 @@ impl Scene {
         let table = named(table, "body")?;
         if let Some(key) = ["bus", "sends"].into_iter().find(|key| table.contains_key(*key)) {
             let right = "leave it out, and give the number of the bus beside the table";
-            let what = "goes by names, and a body by itself knows none";
+            let what = "goes by names, and a body by itself has none";
             return Err(FileError::new(format!("body: {key}"), what, right));
         }
         let entry = BodyEntry::read(table, folder)?;

@@ -159,7 +159,7 @@ pub enum AddError {
     NeverChanges,
     /// Friction is to ring a body of which nobody knows how it moves.
     #[error(
-        "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or tell the body's mass_kg"
+        "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or set the body's mass_kg"
     )]
     CannotRub,
     /// A tracked tip needs to know where a surface lies.

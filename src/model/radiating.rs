@@ -30,7 +30,7 @@ impl ModalModel {
         let unknown =
             |message: &str| ModalModelError::Malformed { path: "radiation".into(), message: message.into() };
         let Some(mut shapes) = self.shapes.take() else {
-            return Err(unknown("the modes have no shapes, so nobody knows how they radiate"));
+            return Err(unknown("the modes have no shapes, so their radiation is unknown"));
         };
         let to = Arc::make_mut(&mut shapes);
         let surface = Surface { points_m: &to.points_m, triangles: &to.triangles };

@@ -43,7 +43,7 @@ impl Plugin for AvianTouchPlugin {
     fn build(&self, app: &mut App) {
         let Some(mut touch) = app.world_mut().get_resource_mut::<Touch>() else {
             return log::error!(
-                "asperity hears no avian: AsperityPlugin has to be added before, and to be built"
+                "asperity gets nothing from avian: AsperityPlugin has to be added before, and to be built"
             );
         };
         match Probes::add(touch.scene()) {
@@ -57,7 +57,7 @@ impl Plugin for AvianTouchPlugin {
                     listen.after(PhysicsSystems::Last).in_set(TouchSystems::Report),
                 );
             }
-            Err(error) => log::error!("asperity hears no avian: {error}"),
+            Err(error) => log::error!("asperity gets nothing from avian: {error}"),
         }
     }
 }

@@ -36,7 +36,7 @@ impl Plugin for RapierTouchPlugin {
     fn build(&self, app: &mut App) {
         let Some(mut touch) = app.world_mut().get_resource_mut::<Touch>() else {
             return log::error!(
-                "asperity hears no rapier: AsperityPlugin has to be added before, and to be built"
+                "asperity gets nothing from rapier: AsperityPlugin has to be added before, and to be built"
             );
         };
         match Adapter::new(touch.scene()) {
@@ -52,7 +52,7 @@ impl Plugin for RapierTouchPlugin {
                     ),
                 );
             }
-            Err(error) => log::error!("asperity hears no rapier: {error}"),
+            Err(error) => log::error!("asperity gets nothing from rapier: {error}"),
         }
     }
 }

@@ -199,7 +199,7 @@ impl asp_event {
         match self.actuator {
             -1 => Ok(None),
             channel => u16::try_from(channel).map(|channel| Some(ChannelId(channel))).map_err(|_| {
-                let right = "must be a haptic channel from 0, or -1 for nobody";
+                let right = "must be a haptic channel from 0, or -1 for none";
                 Failure::new(ASP_BAD_ARGUMENT, format!("actuator: {channel} is refused; {right}"))
             }),
         }

@@ -103,7 +103,7 @@ impl Row {
     }
 
     fn needed<Id: Copy>(&self, at: usize, kind: &str, things: &[Id]) -> Result<Id, String> {
-        self.thing(at, kind, things)?.ok_or_else(|| format!("{kind}: is missing; must be told"))
+        self.thing(at, kind, things)?.ok_or_else(|| format!("{kind}: is missing; must be given"))
     }
 
     fn contact(&self) -> Result<ContactId, String> {

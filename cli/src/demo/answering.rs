@@ -32,7 +32,7 @@ pub fn scene() -> DemoScene {
         title: "A bar and a plate that answer back",
         notice: "A steel bar is struck at its end, on a node of its lowest mode and in the middle: each place sounds different. \
                  Then it is struck under a finger, which shortens it, and free, and touched and let go while it rings. Then a bow is drawn \
-                 over its end and back: it sticks and slips, and sings on a pitch that no report tells. The same on a plate.",
+                 over its end and back: it sticks and slips, and sings on a pitch that is in no report. The same on a plate.",
         toml: toml(),
         log: log(lines()),
         assets: vec![asset("answering.bar.modes.json", bar()), asset("answering.plate.modes.json", plate())],

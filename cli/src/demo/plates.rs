@@ -39,7 +39,7 @@ pub const PLATES: [Plate; 6] = [
     Plate {
         name: "shiny-matte",
         title: "Shiny, then matte",
-        notice: "The mirror image: only where the finger is tells the two apart.",
+        notice: "The mirror image: only the place of the finger tells the two apart.",
         full_scale_m: 3e-4,
     },
     Plate {

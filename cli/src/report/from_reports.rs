@@ -19,7 +19,7 @@ use serde::Serialize;
 const REPORT_RATE_HZ: f64 = 60.0;
 /// Levels of the reference.
 const DENSE_RATE_HZ: f64 = 2_000.0;
-const REFERENCE: &str = "the same mode, told of the same hand 2000 times a second: what 60 reports a second cost. On rough ground no path is near enough \
+const REFERENCE: &str = "the same mode with 2000 reports a second of the same hand: what 60 reports a second cost. On rough ground no path is near enough \
                          for waveforms; there levels count (the table from 60 reports a second)";
 /// Length of the hand's way, m.
 const REACH_M: f64 = 0.09;

@@ -43,7 +43,7 @@ pub struct LoadLevel {
 fn leaves_out(level: usize) -> &'static str {
     match level {
         0 => "nothing",
-        1 => "modes that nobody hears, two fifths at least",
+        1 => "inaudible modes, two fifths at least",
         _ => "the two least important contacts",
     }
 }

@@ -155,7 +155,7 @@ fn known_well_enough(fit: &Fit, spread: &[f64; 4]) -> Result<(), SweepError> {
         return Ok(());
     }
     let what = format!(
-        "tells its resonance to ± {:.2} % and its Q to ± {:.1} % only (three standard errors)",
+        "gives its resonance to ± {:.2} % and its Q to ± {:.1} % only (three standard errors)",
         300.0 * spread[0],
         300.0 * spread[1]
     );

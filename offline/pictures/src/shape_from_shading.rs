@@ -116,7 +116,7 @@ pub fn shape_by(
 ) -> Result<Shape, DesignError> {
     check(image)?;
     if matches!(method, Method::Integrable(_)) {
-        let range = "at least 0.1745 rad (10°): light from the viewer's direction tells no slope's direction";
+        let range = "at least 0.1745 rad (10°): light from the viewer's direction shows no slope's direction";
         DesignError::check("light slant", light.slant_rad(), range, |slant| slant >= LEAST_SLANT_RAD)?;
     }
     let (height_px, unexplained) = match method {
@@ -138,7 +138,7 @@ pub fn shape_by(
 }
 
 fn on_flat_ground(image: &Raster) -> Result<Raster, DesignError> {
-    let expected = "at least 0.1 of the image, connected, and nothing brighter than it: without a flat ground frontal light tells no heights";
+    let expected = "at least 0.1 of the image, connected, and nothing brighter than it: without a flat ground frontal light gives no heights";
     above_flat_ground(image).map_err(|share| DesignError { field: "flat ground", value: share, expected })
 }
 

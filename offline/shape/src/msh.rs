@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
 
     fn count(&self, n: i64) -> Result<usize, ShapeError> {
         let count = usize::try_from(n).ok().filter(|&n| n <= MOST);
-        count.ok_or_else(|| self.wrong(format!("tells of {n} entries, of which at most {MOST} are read")))
+        count.ok_or_else(|| self.wrong(format!("announces {n} entries, of which at most {MOST} are read")))
     }
 
     /// The count of version 2: a line of text even in binary files.

@@ -48,7 +48,7 @@ fn binary(bytes: &[u8], count: usize) -> Result<SurfaceMesh, ShapeError> {
     if count > MOST_TRIANGLES {
         return Err(ShapeError::new(
             "",
-            format!("tells of {count} triangles"),
+            format!("announces {count} triangles"),
             format!("at most {MOST_TRIANGLES}"),
         ));
     }

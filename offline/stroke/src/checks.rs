@@ -172,7 +172,7 @@ pub fn stands_over_floor(floor: &Floor, warnings: &mut Vec<String>) -> Result<()
     }
     if !floor.from_standstill && floor.over_signal_db > -30.0 {
         warnings.push(
-            "no standstill tells the noise floor: record a second of it (speed column at 0)".to_owned(),
+            "no standstill gives the noise floor: record a second of it (speed column at 0)".to_owned(),
         );
     }
     Ok(())

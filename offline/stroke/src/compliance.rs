@@ -42,7 +42,7 @@ pub(crate) fn find(strokes: &[Stroke], tool: &Tool, warnings: &mut Vec<String>) 
     }
     if tool.quantity != Quantity::Displacement || measured().any(|stroke| stroke.axes.len() > 1) {
         warnings.push(
-            "compliance is not told: only the displacement of one axis, along the normal, holds how deep a changing force sinks".to_owned(),
+            "compliance is not estimated: only the displacement of one axis, along the normal, holds how deep a changing force sinks".to_owned(),
         );
         return None;
     }
@@ -73,7 +73,7 @@ pub(crate) fn find(strokes: &[Stroke], tool: &Tool, warnings: &mut Vec<String>) 
         return Some(Compliance { m_n, se_m_n });
     }
     warnings.push(format!(
-        "compliance is not told: {:.1} ± {:.1} µm/N; press from light to hard over the same metres, for longer",
+        "compliance is not estimated: {:.1} ± {:.1} µm/N; press from light to hard over the same metres, for longer",
         1e6 * m_n,
         1e6 * se_m_n
     ));

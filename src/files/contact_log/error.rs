@@ -77,7 +77,7 @@ pub enum LogError {
     },
     /// A place of the body, on a surface that does not lie in it.
     #[error(
-        "at_m: surface \"{surface}\" has no frame that tells uv of it; write [surface.frame] in the scene, or \"uv\" in the log"
+        "at_m: surface \"{surface}\" has no frame that gives its uv; write [surface.frame] in the scene, or \"uv\" in the log"
     )]
     NoFrame {
         /// Name of the surface.

@@ -48,7 +48,7 @@ impl OwnSource {
             None => {
                 let known: Vec<&str> = makers.iter().map(|(kind, _)| *kind).collect();
                 let right = match known.as_slice() {
-                    [] => "open the scene with the program that knows it".to_owned(),
+                    [] => "open the scene with the program that has it".to_owned(),
                     known => format!("must be one of: {}", known.join(", ")),
                 };
                 Err(FileError::new("own: kind", format!("\"{}\" is unknown", self.kind), right))

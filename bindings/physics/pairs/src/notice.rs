@@ -38,7 +38,7 @@ impl fmt::Display for Notice {
             Self::Size { m } => write!(f, "it moves and is {m} long from its middle: asperity takes metres"),
             Self::Unplaced => write!(
                 f,
-                "something slides on it, but its mapping tells no texture coordinates there: a mesh's mapping wants a triangle mesh with a \
+                "something slides on it, but its mapping has no texture coordinates there: a mesh's mapping wants a triangle mesh with a \
                  coordinate for each vertex; anything else a plane, or a mapping by the normal"
             ),
             Self::Unlisted => write!(

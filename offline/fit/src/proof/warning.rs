@@ -210,7 +210,7 @@ impl fmt::Display for Warning {
             ),
             Self::UnknownDecay { count, frequency_hz } => write!(
                 f,
-                "{} longer than the sound tells, the strongest at {frequency_hz:.1} Hz; set to ring three times as long \
+                "{} longer than the sound shows, the strongest at {frequency_hz:.1} Hz; set to ring three times as long \
                  as it; record until it is silent",
                 if *count == 1 { "1 mode rings".to_owned() } else { format!("{count} modes ring") }
             ),

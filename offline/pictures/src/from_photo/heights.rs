@@ -39,7 +39,7 @@ impl std::fmt::Display for Fallback {
         match self {
             Self::FrontalLight(slant) => write!(
                 f,
-                "the light is {:.0}° from the viewer's direction, where shading tells no direction (below {:.0}°), and the picture shows no flat ground to begin from: heights are by dark is deep",
+                "the light is {:.0}° from the viewer's direction, where shading shows no direction (below {:.0}°), and the picture shows no flat ground to begin from: heights are by dark is deep",
                 slant.to_degrees(),
                 LEAST_SLANT_RAD.to_degrees()
             ),
