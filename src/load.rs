@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 /// Way of opening a scene, and settings that count more than the scene file's.
 #[derive(Clone, Copy)]
 pub struct Overrides<'a> {
-    /// Place of the files that the scene names; the disk unless told otherwise.
+    /// Place of the files that the scene names; the disk by default.
     pub files: &'a dyn Files,
     /// Rate of the outputs, Hz.
     pub sample_rate_hz: Option<f64>,
@@ -51,10 +51,10 @@ pub struct Overrides<'a> {
     /// ([`Config::max_contacts`](field@crate::Config::max_contacts)). A render of one finger that
     /// makes room for few opens faster; the bits are the same.
     pub max_contacts: Option<usize>,
-    /// Threads that render at once; 1 unless told otherwise
+    /// Threads that render at once; 1 by default
     /// ([`Config::threads`](field@crate::Config::threads)).
     pub threads: Option<usize>,
-    /// Conversion of game time to samples; exactly unless told otherwise, for a render or a replay.
+    /// Conversion of game time to samples; exactly by default, for a render or a replay.
     /// A game that opens a scene and runs now takes [`ClockMode::LIVE`].
     pub clock: Option<ClockMode>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are
@@ -261,7 +261,7 @@ fn sensor(files: &dyn Files, entry: &PickupEntry, folder: &Path) -> Result<Optio
         .map_err(|error| error.within(format!("pickup \"{}\"", entry.name)))
 }
 
-/// A bus without a word about a limiter has one where something is known to clip or nobody knows:
+/// A bus without a word about a limiter has one where something is known to clip or it is unknown:
 /// before a sound card, where a device is named, behind a level that nobody wrote.
 fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides<'_>) -> AudioBus {
     let names_device =

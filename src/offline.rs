@@ -92,7 +92,7 @@ pub struct SandAfter {
 /// ```
 ///
 /// Events with bad numbers are left out and counted in
-/// [`Stats::refused`](crate::Stats::refused); the first is told in [`Render::first_refused`].
+/// [`Stats::refused`](crate::Stats::refused); the first is in [`Render::first_refused`].
 ///
 /// # Errors
 /// When the log names a surface, body or striker that is not in `names`.
@@ -138,7 +138,7 @@ pub fn render_edited(
     let (rate, inner_rate) = (renderer.sample_rate_hz(), renderer.inner_rate_hz());
     let every = (inner_rate / rate).round() as u64;
     let frames = ((log.heard_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
-    // What is misnamed is told before anything is rendered, unless an edit may bring it.
+    // What is misnamed is reported before anything is rendered, unless an edit may bring it.
     log.check_names(names)?;
     let mut names = names.clone();
     let mut take = Take::new(scene, renderer, frames, options);

@@ -17,7 +17,7 @@
 //! | w | complex noise of mean square 1, [`DiffuseBand::width_hz`] wide |
 //! | j | impulses, N·s a sample |
 //!
-//! u hears the input as a mode does, so a soft striker's long pulse leaves high bands out, and a
+//! u takes the input as a mode does, so a soft striker's long pulse leaves high bands out, and a
 //! stroke sounds where its force has power. w is uniform noise at a quarter of the sample rate
 //! through two equal one-pole low-passes, interpolated linearly. It begins anew at |w| = 1, with a
 //! sign for each band, in the sample that wakes a bank at rest: y starts at 0 at its exact level,

@@ -35,7 +35,7 @@
 //! *Speed.* The eight or sixteen samples side by side (sixteen where a register holds eight or
 //! more, so that what is the same in all of them is spread over the lanes once for two registers)
 //! are mostly in one cell of a slow octave. Its four gradients are hashed once and kept until a
-//! sample leaves the cell, which one comparison of the samples' bounds tells. This changes no bit.
+//! sample leaves the cell, which one comparison of the samples' bounds shows. This changes no bit.
 
 mod cells;
 mod gains;

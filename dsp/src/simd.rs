@@ -1,4 +1,4 @@
-//! SIMD: the one room that knows which instructions this processor has.
+//! SIMD: the one room that asks which instructions this processor has.
 //!
 //! A [`Level`] is found once and carried by every design. A kernel is written once, over the
 //! vectors of `fearless_simd`, whose values exist only where their instructions do; `at_level!`

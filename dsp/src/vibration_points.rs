@@ -35,7 +35,7 @@ const MEMORY_S: f64 = 0.04;
 pub const SPLIT_HZ: f64 = 100.0;
 /// Rates of a pad's two motors, Hz. **Assumed**: the class of pads with a heavy and a light weight.
 pub const MOTORS_HZ: [f64; 2] = [60.0, 160.0];
-/// Least sensation that is told, of displacement 1; below it a point is silence.
+/// Least sensation that is reported, of displacement 1; below it a point is silence.
 const SILENCE: f64 = 1e-12;
 
 /// Choice of the frequency of a point.

@@ -3,7 +3,7 @@
 //!
 //! | leaves out | |
 //! |---|---|
-//! | modes | by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): those that nobody hears, with 6 dB of safety; at least two fifths of each body, where nothing is hidden by the model or those that would fall asleep first, whichever keeps more. They hear nothing more and ring out, without a click |
+//! | modes | by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): inaudible ones, with 6 dB of safety; at least two fifths of each body, where nothing is hidden by the model or those that would fall asleep first, whichever keeps more. They take no more input and ring out, without a click |
 //! | contacts | those of lowest priority, as many at a time as are a tenth of the cost; they fade, and a move revives them later |
 //!
 //! A level saves at least a tenth of the one before, or it is none. Modes are the first level
@@ -163,7 +163,7 @@ mod tests {
     /// Ten contacts on a body whose modes are most of the work.
     const RINGING: Work = Work { contacts: 10, modes: 10_000, spared: 6000 };
 
-    /// An engine that has been busy, but not late, and then hears `reports`.
+    /// An engine that has been busy, but not late, and then gets `reports`.
     fn after(reports: impl IntoIterator<Item = f32>) -> Governor {
         working(RINGING, [0.7; MEDIAN_OF].into_iter().chain(reports))
     }

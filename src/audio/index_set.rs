@@ -17,7 +17,7 @@ impl IndexSet {
         }
     }
 
-    /// Forgets the places for which `in_use` is false.
+    /// Drops the places for which `in_use` is false.
     pub(crate) fn retain(&mut self, mut in_use: impl FnMut(usize) -> bool) {
         self.0.retain(|place| in_use(*place));
     }

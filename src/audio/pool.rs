@@ -7,8 +7,8 @@
 //! ```
 //! Jobs may go out while others are on their way: there is one wait, for the last of them.
 //!
-//! A job owns what it works on, so who runs it changes nothing but the time: whoever adds results
-//! up does so in an order of its own.
+//! A job owns what it works on, so who runs it changes nothing but the time: the thread that adds
+//! results up does so in an order of its own.
 //!
 //! *No lock.* Both queues are lock-free rings made at the start. A helper looks for work [`LOOKS`]
 //! times, then sleeps; the audio thread wakes a sleeping one by `unpark`, which marks it and, if it
@@ -104,7 +104,7 @@ impl<J: Job> Pool<J> {
         }
     }
 
-    /// A job that is done, whoever did it; none if all are home. While none is, this thread does
+    /// A job that is done, on any thread; none if all are home. While none is, this thread does
     /// one of those that wait.
     pub(crate) fn next(&mut self, room: &mut J::Room) -> Option<J> {
         let mut looks = 0;

@@ -241,7 +241,7 @@ impl Renderer {
         [guess, guess.saturating_sub(64)].into_iter().find(fits).unwrap_or(0)
     }
 
-    /// Tells the engine which share of its time budget the last block took (1 = all of it); the
+    /// Reports which share of its time budget the last block took (1 = all of it); the
     /// device measures it, because nothing in here reads a clock. Shown in
     /// [`Stats::load`](crate::Stats::load). When blocks run late, the least audible work is left
     /// out ([`Config::shed_load`](crate::Config::shed_load)).

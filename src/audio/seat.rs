@@ -214,7 +214,7 @@ impl Seat {
         self.current.as_deref().is_none_or(hard) && self.previous.as_deref().is_none_or(hard)
     }
 
-    /// Changes parameters of the source; tells whether it took the change.
+    /// Changes parameters of the source; returns whether it took the change.
     pub(crate) fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.source().is_some_and(|source| source.set(change, sample))
     }
@@ -256,7 +256,7 @@ impl Seat {
 
     /// Error of cubics through samples a footprint apart on the micro-relief, and what has to be
     /// looked at so that no more than `left_m` is missed; the other footprint is that by which
-    /// octaves fade. While the surface becomes another it tells of nothing.
+    /// octaves fade. While the surface becomes another there is none.
     pub(crate) fn missed(
         &mut self,
         roughness: f64,

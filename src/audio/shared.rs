@@ -74,7 +74,7 @@ impl Segment<'_> {
     }
 }
 
-/// The samples at hand, for whoever renders voices.
+/// The samples at hand, for the thread that renders voices.
 #[derive(Clone, Copy)]
 pub(crate) struct SampleRange {
     /// Absolute index of the first sample.

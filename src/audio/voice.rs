@@ -135,7 +135,7 @@ impl Voice {
         }
     }
 
-    /// A report tells what carries its tip, or that it is pressed, and whether it rolls.
+    /// A report states what carries its tip, or that it is pressed, and whether it rolls.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip_force.carry(sample);
         self.rolling.tell(sample);

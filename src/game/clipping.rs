@@ -9,7 +9,7 @@ use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::id::{BodyId, SurfaceId};
 use std::collections::HashMap;
 
-/// Less than this over full scale is not told, dB.
+/// Less than this over full scale is not reported, dB.
 pub(crate) const TOLD_DB: f64 = 0.5;
 
 /// A reason why more leaves than full scale holds. Its text says what to turn, and by how much.

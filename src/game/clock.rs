@@ -170,7 +170,7 @@ impl Clock {
         self.newest.0
     }
 
-    /// Stamp of a game time before the newest, told by a game that has gone back: the mapping stays
+    /// Stamp of a game time before the newest, from a game that has gone back: the mapping stays
     /// what it is.
     pub(crate) fn stamp_back(&mut self, time_s: f64) -> Stamped {
         self.last = Stamp::at(self.sample_at(time_s)).max(self.last);
@@ -256,7 +256,7 @@ impl Clock {
 impl Stands {
     const UNKNOWN: Self = Self { position: 0, since_s: f64::INFINITY, long: false };
 
-    /// Notes where the audio stands at a report, and tells whether game time is to be tied anew:
+    /// Notes where the audio stands at a report, and returns whether game time is to be tied anew:
     /// once it has stood for longer than any block, then again and again.
     fn look(&mut self, time_s: f64, position: u64) -> bool {
         let goes_on = position != self.position;

@@ -1,4 +1,4 @@
-//! Contradictions: one motion that a game's reports tell twice, and differently.
+//! Contradictions: one motion that a game's reports state twice, and differently.
 //!
 //! [`Motions`] compares what is reported on each surface; what it finds stands among the reasons of
 //! [`Scene::why_silent`](crate::Scene::why_silent).

@@ -35,7 +35,7 @@ const STRIKE_N_S: f64 = 2.0 * STRIKE.mass_kg * STRIKE.speed_m_s;
 /// Body under a surface that has none, for what is held and rings by strokes on it.
 const STAND_IN: (Stock, Material, f64) = (Stock::Plate, Material::CERAMIC, 0.14);
 
-/// Forces of the strokes that tell how a surface grows louder, N, and their speed, m/s: from what
+/// Forces of the strokes that show how a surface grows louder, N, and their speed, m/s: from what
 /// weighs 10 g to what weighs 100 kg.
 pub(crate) const FORCES_N: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 pub(crate) const FAST_M_S: f64 = 1.0;

@@ -44,7 +44,7 @@ enum Kept {
 /// Time that lines may wait in the writer's buffer while the game reports nothing.
 const FLUSHED_AFTER: Duration = Duration::from_millis(500);
 
-/// Writes lines as they come, until the recording ends; tells how many there were.
+/// Writes lines as they come, until the recording ends; returns how many there were.
 fn write_all(lines: &Receiver<LogLine>, out: impl Write) -> io::Result<u64> {
     let (mut out, mut written) = (BufWriter::new(out), 0);
     loop {
@@ -128,8 +128,8 @@ impl Recording {
         self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0, ticket: 0 });
     }
 
-    /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and
-    /// when, s of audio.
+    /// Notes an event that the engine applies at `time_s`, stated in which of the clock's epochs
+    /// and when, s of audio.
     pub(crate) fn note(
         &mut self,
         time_s: f64,

@@ -94,7 +94,7 @@ pub struct Scene {
     reported: Reported,
     /// Motions that the reports give twice.
     motions: Motions,
-    /// Surface of each contact, and the place in its body that its newest report told.
+    /// Surface of each contact, and the place in its body of its newest report.
     touched: HashMap<ContactId, Touched>,
     /// Time of each body's newest motion, s, and how fast it turned, rad/s.
     moved: HashMap<BodyId, (f64, [f64; 3])>,
@@ -117,12 +117,12 @@ struct Touched {
     spin: Spin,
     /// Place of its probe; none = the engine's own.
     probe: Option<usize>,
-    /// The gain that the game has told, and whether nobody feels it.
+    /// The gain that the game has set, and whether it is felt.
     gain: f64,
     unfelt: bool,
 }
 
-/// Surface as the game half knows it.
+/// Surface as the game half stores it.
 #[derive(Clone)]
 pub(crate) struct KnownSurface {
     /// True where contacts on it ring something.
@@ -138,7 +138,7 @@ pub(crate) struct KnownSurface {
     levels: SurfaceLevels,
 }
 
-/// Body as the game half knows it.
+/// Body as the game half stores it.
 #[derive(Clone)]
 pub(crate) struct KnownBody {
     material: Material,

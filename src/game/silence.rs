@@ -1,4 +1,4 @@
-//! Why nothing is heard or felt: what the game half knows of it, in words.
+//! Why nothing is heard or felt: what the game half sees of it, in words.
 //!
 //! Nothing that is refused, lost or left out stops a game, so a mistake of its own shows as
 //! silence. [`Scene::why_silent`](crate::Scene::why_silent) answers with what speaks against sound,
@@ -17,7 +17,7 @@ use crate::resource::bank::LONGEST_CONTACT_S;
 /// Events this far ahead of what is rendered wait longer than any clock's window, s.
 const FAR_AHEAD_S: f64 = 0.25;
 
-/// A limiter that turns down by more is told, dB.
+/// A limiter that turns down by more is reported, dB.
 const LIMITED_DB: u64 = 12;
 
 /// A reason why less is heard or felt than was reported. Its text says what would be right.
@@ -157,7 +157,7 @@ pub enum SilenceReason {
     /// The reports of a surface contradict themselves: something sounds, and not what was meant.
     #[error("{0}")]
     Contradicts(Contradiction),
-    /// Moves or impacts are told at one and the same time.
+    /// Moves or impacts come at one and the same time.
     #[error(
         "{count} reports came at one time, {time_s} s, as if nothing had moved in it; report each with the game's time in \
          seconds, which goes on from step to step"
@@ -253,7 +253,7 @@ impl Reported {
     }
 
     fn touch(&mut self, sample: &ContactSample) {
-        // A depth, or a place that tells one, is answered by what gives way.
+        // A depth, or a place that gives one, is answered by what gives way.
         self.pressed |= sample.normal_force_n > 0.0
             || sample.depth_m.map_or(sample.normal_force_n.is_nan(), |depth_m| depth_m > 0.0);
         let first_uv = *self.first_uv.get_or_insert(sample.uv);

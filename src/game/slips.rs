@@ -66,7 +66,7 @@ struct Blows {
 }
 
 impl Slips {
-    /// Notes an event at game time; `is_light` tells whether the probe of a contact that begins is
+    /// Notes an event at game time; `is_light` says whether the probe of a contact that begins is
     /// a finger or a light tool.
     pub(crate) fn note(&mut self, time_s: f64, event: &ContactEvent, is_light: bool) {
         self.goes_on |= *self.first_s.get_or_insert(time_s) != time_s;
@@ -107,7 +107,7 @@ impl Slips {
         }
     }
 
-    /// Reports of something new at the only time that was told, and that time, s; none where time
+    /// Reports of something new at the only time that came, and that time, s; none where time
     /// goes on.
     pub(crate) fn stands(&self) -> Option<(u64, f64)> {
         let at_s = self.first_s.filter(|_| !self.goes_on && self.at_once >= LEAST_REPORTS);

@@ -35,7 +35,7 @@ pub(crate) enum Message {
         /// Ticket of a strike with a name; 0 = it has none.
         ticket: u32,
     },
-    /// A body moves as a whole, over so many samples from what was told before; how much faster it
+    /// A body moves as a whole, over so many samples from what was set before; how much faster it
     /// turns, rad/s².
     Motion { stamp: Stamp, epoch: u64, slot: usize, motion: RigidMotion, alpha: [f64; 3], over: u32 },
     /// A probe for a new place.

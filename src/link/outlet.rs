@@ -118,7 +118,7 @@ pub trait PortKind {
 pub struct Opened<P> {
     /// For the audio half; none if nothing there writes to the port.
     pub outlet: Option<Box<dyn Outlet>>,
-    /// For whoever reads.
+    /// For the reader.
     pub port: P,
 }
 

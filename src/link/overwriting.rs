@@ -1,8 +1,8 @@
 //! Overwriting ring: one writer that never waits, one reader that comes when it likes.
 //!
-//! A reader that is late loses the oldest, and is told how much. Every word is an atomic, so that a
+//! A reader that is late loses the oldest, and gets the number. Every word is an atomic, so that a
 //! word that is overwritten while it is read is no data race but an old or a new word; which of
-//! them may be new tells the writer's claim:
+//! them may be new shows the writer's claim:
 //!
 //! ```text
 //! writer: claim n words → write them → publish         reader: copy what is published → look at the claim
@@ -11,9 +11,9 @@
 //! What was copied from before *claim − capacity* counts as lost (a sequence lock; Boehm, "Can
 //! seqlocks get along with programming language memory models?", 2012, §4).
 //!
-//! A claim is released and acquired like a publication: whoever skips to what a claim leaves has
-//! also seen every publication before it, so that the reader never stands beyond what is published.
-//! `tests/models` tries it under every order that a processor may choose.
+//! A claim is released and acquired like a publication: a reader that skips to what a claim leaves
+//! has also seen every publication before it, so that the reader never stands beyond what is
+//! published. `tests/models` tries it under every order that a processor may choose.
 
 use crate::link::threads::Arc;
 use crate::link::threads::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering, fence};
@@ -84,7 +84,7 @@ impl Writer {
 }
 
 impl Reader {
-    /// Copies the oldest words that are left; tells how many.
+    /// Copies the oldest words that are left; returns how many.
     pub fn read(&mut self, out: &mut [u32]) -> usize {
         let capacity = self.ring.words.len() as u64;
         let published = self.ring.published.load(Ordering::Acquire);

@@ -11,7 +11,7 @@ macro_rules! counters {
         #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
         pub struct Stats {
             $($(#[doc = $doc])+ pub $name: u64,)+
-            /// Share of the time budget that the last blocks took, as told by the device; 0
+            /// Share of the time budget that the last blocks took, by the device; 0
             /// offline.
             pub load: f32,
             /// Peak level of each audio bus.

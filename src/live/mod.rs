@@ -1,4 +1,4 @@
-//! Real-time outputs: sound cards, a paced device that nobody hears, and which signal goes to which
+//! Real-time outputs: sound cards, a paced silent device, and which signal goes to which
 //! channel.
 
 pub mod channel_map;

@@ -1,7 +1,7 @@
-//! A device that nobody hears: a thread with absolute deadlines that renders in real time.
+//! A silent device: a thread with absolute deadlines that renders in real time.
 //!
 //! It paces tests and machines without a sound card, and shows how many blocks were late. A bare
-//! loop with the same deadlines ([`Pace::measure`]) tells what the machine itself loses.
+//! loop with the same deadlines ([`Pace::measure`]) shows what the machine itself loses.
 
 use crate::live::channel_map::Interleaver;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ impl Drop for NullSink {
 }
 
 impl Pace {
-    /// Runs `work` once a period for a duration and measures it; `work` is told the load of the
+    /// Runs `work` once a period for a duration and measures it; `work` gets the load of the
     /// block before.
     pub fn measure(period: Duration, duration: Duration, work: impl FnMut(f32)) -> Self {
         let end = Instant::now() + duration;

@@ -34,7 +34,7 @@ pub struct Changes {
 impl Scene {
     /// Makes of the scene that was opened as `before` the one that `after` says, while it sounds:
     /// bodies and surfaces that differ, are new or gone, new probes, gains of buses. What is fixed
-    /// when an engine is built is told in [`Changes::waiting`]. `overrides` are those that the
+    /// when an engine is built is listed in [`Changes::waiting`]. `overrides` are those that the
     /// scene was opened with.
     ///
     /// # Errors

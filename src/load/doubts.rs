@@ -1,4 +1,4 @@
-//! Numbers of actuators that are accepted and hardly meant: a unit off by a thousand, told with
+//! Numbers of actuators that are accepted and hardly meant: a unit off by a thousand, reported with
 //! what was likely meant.
 
 use crate::model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
@@ -15,7 +15,7 @@ pub(super) fn doubts(actuators: &[ActuatorSettings], full_scale: impl Iterator<I
         if matches!(settings.output, Quantity::Displacement | Quantity::Tangential) {
             told.extend(long(&format!("actuator {channel}: full_scale"), full_scale, MOST_FULL_SCALE_M));
         }
-        // The limits of the device that is equalised are told once.
+        // The limits of the device that is equalised are reported once.
         let other = settings.limit.filter(|limit| settings.equalise.as_ref() != Some(limit));
         for (key, device) in [("equalise", settings.equalise), ("limit", other)] {
             told.extend(

@@ -119,7 +119,7 @@ pub(super) fn resolve(
 /// A reference stroke among the trials.
 struct Trial {
     actuator: usize,
-    /// Bus of the body that it rings; none where that is told in pascals, or nothing rings.
+    /// Bus of the body that it rings; none where that is set in pascals, or nothing rings.
     bus: Option<usize>,
     start_s: f64,
 }
@@ -150,7 +150,7 @@ impl Burst {
 struct Trials {
     log: ContactLog,
     strokes: Vec<Trial>,
-    /// True for each bus that a body plays on and that does not tell in pascals how loud it is.
+    /// True for each bus that a body plays on and that does not say in pascals how loud it is.
     levelled: Vec<bool>,
     /// Times of the single strikes, from and to.
     strikes_s: [f64; 2],

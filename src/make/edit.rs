@@ -18,7 +18,7 @@ pub type MakeSurface<'a> = dyn FnMut(&str, &Names) -> Option<Surface> + 'a;
 
 /// Makers of the edits of a recording that is rendered again.
 pub struct Edits<'a> {
-    /// Place of the files that surfaces name; the disk unless told otherwise.
+    /// Place of the files that surfaces name; the disk by default.
     pub files: &'a dyn Files,
     /// Sources of one's own, as in [`Overrides::own`](crate::load::Overrides::own).
     pub own: &'a [(&'a str, MakeSource)],

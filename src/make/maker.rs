@@ -95,7 +95,7 @@ impl<'a> Loader<'a> {
             Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::from_error)?;
         let surface = match (material, &entry.source) {
             (Some(material), Source::Flat) => surface.material(material),
-            // How rough a pictured surface is, its material does not tell: it may be glazed or
+            // How rough a pictured surface is, its material does not say: it may be glazed or
             // sanded.
             (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
                 surface.material(material).roughness(Roughness::FromSource)

@@ -20,7 +20,7 @@ use asperity_surface::sand::{SandDesign, SandSource, Tool};
 use asperity_surface::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
 use asperity_surface::wrap::Wrap;
 
-/// Points of a graph unless told otherwise.
+/// Points of a graph by default.
 #[cfg(feature = "brownian")]
 const GRAPH_POINTS: usize = 1 << 14;
 

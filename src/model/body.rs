@@ -39,7 +39,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// Material of a body, or of a surface without one, unless told otherwise.
+    /// Material of a body, or of a surface without one, by default.
     pub const DEFAULT_MATERIAL: Material = Material::PLA;
 
     /// A body of PLA on bus 0.
@@ -66,7 +66,7 @@ impl Body {
         self
     }
 
-    /// The bus on which its sound leaves; the first unless told otherwise.
+    /// The bus on which its sound leaves; the first by default.
     #[must_use]
     pub fn bus(mut self, bus: BusId) -> Self {
         self.bus = bus.0;

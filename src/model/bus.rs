@@ -28,7 +28,7 @@ pub struct AudioBus {
     pub gain: f64,
     /// Keeps the output within ±1 by a peak limiter.
     pub limit: bool,
-    /// Sound pressure that full scale stands for, Pa, where somebody knows it. While a machine is
+    /// Sound pressure that full scale stands for, Pa, where it is known. While a machine is
     /// late, modes are left out as they are missed at the level that follows from it; without, the
     /// loudest mode of a body is taken to be at 70 dB SPL. No sample depends on it otherwise.
     pub pascals_at_full_scale: Option<f64>,

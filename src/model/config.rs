@@ -38,7 +38,7 @@ pub struct Config {
     /// Rate of every output, Hz; 8–384 kHz, default 44.1 kHz.
     pub sample_rate_hz: f64,
     /// Inner samples where there would be one: 1–16, default 1. What a sample is too coarse for
-    /// (the contact between its samples, the force as the body hears it) errs the less, and
+    /// (the contact between its samples, the force as the body takes it) errs the less, and
     /// everything but the outputs costs so many times as much.
     pub oversampling: usize,
     /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
@@ -54,7 +54,7 @@ pub struct Config {
     pub probe: Probe,
     /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
-    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By
+    /// Audio buses, in order; a body plays on one of them, the first by default. By
     /// default one with gain 1, without limiter. With none nothing sounds, and a body that is only
     /// listened to by pickups costs less.
     pub audio: Vec<AudioBus>,

@@ -1,11 +1,11 @@
 //! Contact sample: where and how a contact touches at one instant.
 //!
 //! ```text
-//! place   uv, or at_m: a place in the body, whose surface's frame tells uv; without a frame it is where a block of stuff is cut
-//! press   normal_force_n, or depth_m: how deep the tip stands below the untouched surface; at_m tells it where neither is written
+//! place   uv, or at_m: a place in the body, whose surface's frame gives uv; without a frame it is where a block of stuff is cut
+//! press   normal_force_n, or depth_m: how deep the tip stands below the untouched surface; at_m gives it where neither is written
 //! ```
 //!
-//! A device's loop knows where its tip is and wants to know the force: it reports a depth. Only
+//! A device's loop has the place of its tip and wants the force: it reports a depth. Only
 //! what gives way can answer; on a hard surface a depth says nothing about the force, and is
 //! refused.
 
@@ -30,13 +30,13 @@ use asperity_dsp::limits;
 pub struct ContactSample {
     /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
     /// wrap or run on beyond 0–1. [`at_m`](Self::at_m) counts instead on a surface with a frame;
-    /// NaN if only that was told.
+    /// NaN if only that was reported.
     pub uv: [f64; 2],
     /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
     pub velocity_m_s: Option<[f64; 2]>,
     /// Force pressing the finger onto the surface, N. Physics engines report small negative values
     /// around lift-off; they count as 0. [`depth_m`](Self::depth_m) counts instead; NaN if the
-    /// place tells the depth.
+    /// place gives the depth.
     pub normal_force_n: f64,
     /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin)
     /// only.
@@ -150,7 +150,7 @@ impl ContactSample {
         Self { uv, depth_m: Some(depth_m), ..Self::default() }
     }
 
-    /// With its tip at a place of the body, m: the surface's frame tells where that is on the
+    /// With its tip at a place of the body, m: the surface's frame gives where that is on the
     /// surface and how deep below it.
     #[must_use]
     pub fn tip_at(at_m: [f64; 3]) -> Self {

@@ -103,7 +103,7 @@ pub enum PickupProblem {
         "at_m: is {0} m off the surface; must be within 1 % of the body's size, {1} m here: the nearest place of it is {2:?}"
     )]
     OffSurface(f64, f64, [f64; 3]),
-    /// The body has shapes, and no place is told.
+    /// The body has shapes, and no place is given.
     #[error("at_m: is missing; write a place of the surface, [x, y, z] in metres")]
     NoPlace,
     /// The body has shapes, which say how much a place moves.
@@ -157,7 +157,7 @@ pub enum AddError {
     /// The surface never changes, so that there is nothing to be shown.
     #[error("surface: its source never changes, so that there is no moving picture of it; only sand has one")]
     NeverChanges,
-    /// Friction is to ring a body of which nobody knows how it moves.
+    /// Friction is to ring a body whose motion is unknown.
     #[error(
         "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or set the body's mass_kg"
     )]

@@ -113,7 +113,7 @@ impl Touching {
 /// # let bell = BodyId::from_bits(1);
 /// // 20 g of wood with a tip of 8 mm, at 1.5 m/s.
 /// let mallet = Impact::on(bell).striker(Material::WOOD, 0.02, 0.008).at_speed(1.5);
-/// // Or what a physics engine tells: 0.03 N·s at 1.5 m/s, half of the speed is left.
+/// // Or what a physics engine reports: 0.03 N·s at 1.5 m/s, half of the speed is left.
 /// let tumbling = Impact::from_impulse(bell, 0.03, 1.5, 0.5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -261,7 +261,7 @@ impl ContactEvent {
         self
     }
 
-    /// Event at the place in the body that another one tells.
+    /// Event at the place in the body of another one.
     pub(crate) fn at_place_of(mut self, told: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
@@ -273,7 +273,7 @@ impl ContactEvent {
         self
     }
 
-    /// Event with the velocity that another one tells, beyond what the models reach too.
+    /// Event with the velocity of another one, beyond what the models reach too.
     pub(crate) fn with_velocity_of(mut self, told: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
@@ -320,7 +320,7 @@ impl Impact {
         }
     }
 
-    /// From what most physics engines tell of a collision: the impulse along the normal, N·s, and
+    /// From what most physics engines report of a collision: the impulse along the normal, N·s, and
     /// the approach speed. The mass follows from J = m v (1 + e), so that the body receives the
     /// impulse that was reported.
     #[must_use]

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The one mapping between texture coordinates and the body's space, metres in the body's own
-//! frame: solids are cut from one block by it, and places on a body are told as texture coordinates
-//! of its surfaces and back. Vectors are any library's, through [`mint`].
+//! frame: solids are cut from one block by it, and places on a body are stated as texture
+//! coordinates of its surfaces and back. Vectors are any library's, through [`mint`].
 
 use crate::model::bad_value::{BadValue, within};
 use asperity_dsp::limits;

@@ -61,11 +61,11 @@ macro_rules! ids {
 }
 
 ids! {
-    /// A surface that a [`Scene`](crate::Scene) knows.
+    /// A surface of a [`Scene`](crate::Scene).
     SurfaceId,
-    /// A ringing body that a [`Scene`](crate::Scene) knows.
+    /// A ringing body of a [`Scene`](crate::Scene).
     BodyId,
-    /// A probe that a [`Scene`](crate::Scene) knows.
+    /// A probe of a [`Scene`](crate::Scene).
     ProbeId,
 }
 

@@ -55,8 +55,8 @@ impl InnerRate {
         sample % self.every as u64 == self.at as u64
     }
 
-    /// Copies what leaves of the inner samples from `position` on to the beginning of `out`; tells
-    /// the index of the first among all that leave, and how many there are.
+    /// Copies what leaves of the inner samples from `position` on to the beginning of `out`;
+    /// returns the index of the first among all that leave, and how many there are.
     #[cold]
     #[inline(never)]
     pub(crate) fn leaving(&self, position: u64, inner: &[f32], out: &mut [f32]) -> (u64, usize) {

@@ -1,4 +1,4 @@
-//! Mode shapes: how a body's surface moves in each mode, so that a strike at any place knows what
+//! Mode shapes: how a body's surface moves in each mode, so that a strike at any place finds what
 //! it excites.
 //!
 //! A strike of impulse J at a point p of the surface, along n̂, sounds as y(t) = J Σ `gains[m]` ·

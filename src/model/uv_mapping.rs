@@ -108,7 +108,8 @@ fn tangent(
 mod tests {
     use super::*;
 
-    /// Movement of uv for a step of `step_m` from a place, and what is told of a velocity along it.
+    /// Movement of uv for a step of `step_m` from a place, and what is reported of a velocity along
+    /// it.
     fn step(mapping: UvMapping, place: DVec3, outward: DVec3, step_m: DVec3) -> ([f64; 2], [f64; 2]) {
         let at = |place: DVec3| match mapping.at(place.to_array(), outward.to_array()) {
             Some(UvPlace::Triangle(triangle)) => triangle.sample(place.to_array(), step_m.to_array(), 1.0),

@@ -1,7 +1,7 @@
 //! Texture coordinates of a contact in space: a triangle of a mesh with texture
 //! coordinates.
 //!
-//! Physics engines tell a point and a velocity in space; [`ContactSample`] wants texture
+//! Physics engines report a point and a velocity in space; [`ContactSample`] wants texture
 //! coordinates and a velocity along the surface's u and v axes. Within a triangle both are linear:
 //!
 //! ```text
@@ -20,7 +20,7 @@ use mint::{Vector2, Vector3};
 /// one.
 const FLAT: f64 = 1e-24;
 
-/// A triangle in metres, in the space in which the physics engine tells its contacts, with a
+/// A triangle in metres, in the space in which the physics engine reports its contacts, with a
 /// texture coordinate at each corner.
 ///
 /// ```

@@ -38,7 +38,7 @@ impl Rendered<'_> {
         let mut still = self.log.lines.iter().filter(backwards).peekable();
         let first_s = still.peek().map(|line| line.t);
         let still = still.count() as u64;
-        // A speed below 0 counts as 0, which is told by itself.
+        // A speed below 0 counts as 0, which is reported by itself.
         let own =
             |reason: &&SilenceReason| matches!(reason, SilenceReason::Held { count } if *count <= still);
         let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0 && !own(reason));
@@ -187,7 +187,7 @@ impl Rendered<'_> {
                 )
         };
         let because = || self.render.why_silent.iter().filter(counts);
-        // What was lost is told by itself.
+        // What was lost is reported by itself.
         let is_state = |reason: &&SilenceReason| {
             reason.count() == 0 || matches!(reason, SilenceReason::TimeStands { .. })
         };

@@ -275,7 +275,7 @@ impl BodySlot {
         self.pickups.as_deref_mut()
     }
 
-    /// Forgets all that rings.
+    /// Silences all that rings.
     fn rest(&mut self) {
         self.bank.silence();
         if let Some(field) = &mut self.field {
@@ -293,7 +293,7 @@ impl BodySlot {
         }
     }
 
-    /// Forgets all that rings and all that is on its way.
+    /// Silences all that rings and all that is on its way.
     pub(crate) fn silence(&mut self) {
         self.rest();
         for place in &mut self.places {

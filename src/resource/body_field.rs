@@ -150,7 +150,7 @@ impl BodyField {
             && self.sliders.iter().all(Slider::is_silent)
     }
 
-    /// Forgets what is on its way.
+    /// Drops what is on its way.
     pub(crate) fn silence(&mut self) {
         self.strikes.iter_mut().for_each(|struck| struck.bus.clear());
         self.sliders.iter_mut().for_each(Slider::silence);

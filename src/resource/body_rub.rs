@@ -1,10 +1,10 @@
 //! A rubbed body: one contact that sticks and slips on it, coupled with its modal bank in every
 //! sample (`dsp::stick_slip`).
 //!
-//! The body's own bank tells, at the beginning of a cell of the absolute sample grid, how the
+//! The body's own bank gives, at the beginning of a cell of the absolute sample grid, how the
 //! rubbed place will move by itself; a second bank of the same modes, which sounds as the speed of
-//! that place, tells what strikes the body within the cell beside, and sleeps when nothing does.
-//! From both follow the forces, which the body's bank then hears as it hears any other contact.
+//! that place, gives what strikes the body within the cell beside, and sleeps when nothing does.
+//! From both follow the forces, which the body's bank then takes as it takes any other contact.
 //! Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact
 //! that begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
 
@@ -168,7 +168,7 @@ impl BodyRub {
         self.stage == Stage::Idle
     }
 
-    /// Forgets the contact.
+    /// Drops the contact.
     pub(crate) fn silence(&mut self) {
         self.slider.silence();
         self.slider.owner = None;

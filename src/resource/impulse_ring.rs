@@ -1,7 +1,7 @@
 //! Impulse ring: what is on its way to a body, on the absolute sample grid.
 //!
 //! Pulses are deposited where they fall, also between two samples, and taken out sample by sample;
-//! what has been taken is zero for the next turn. It knows until when anything is in it, so that an
+//! what has been taken is zero for the next turn. It holds until when anything is in it, so that an
 //! empty ring costs nothing.
 
 use asperity_dsp::hertz::{self, HertzPulse};
@@ -33,7 +33,7 @@ impl<T: Copy + Default> ImpulseRing<T> {
         self.busy_until
     }
 
-    /// Forgets everything.
+    /// Clears everything.
     pub(crate) fn clear(&mut self) {
         self.values.fill(T::default());
         self.busy_until = 0;

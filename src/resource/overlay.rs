@@ -50,7 +50,7 @@ pub(crate) struct Overlay {
 /// Tips whose weights are kept; one more takes the place of the oldest, and its weights are worked
 /// out when it comes back.
 const TIPS: usize = 8;
-/// Roughness whose relief tells how much room the noise needs: the middle of the scale.
+/// Roughness whose relief says how much room the noise needs: the middle of the scale.
 const ORDINARY: f64 = 0.5;
 
 /// Weights of the octaves for one tip.
@@ -93,7 +93,7 @@ pub(crate) struct ShortWaves {
     pub(crate) at_m: [f64; MAX_BLOCK],
     /// Between the sample before and each, midway and at the quarters.
     pub(crate) between_m: [[f64; MAX_BLOCK]; WAYS.len()],
-    /// False where the surface could not tell, as while it becomes another.
+    /// False where the surface had no answer, as while it becomes another.
     pub(crate) known: bool,
 }
 

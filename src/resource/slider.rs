@@ -3,7 +3,7 @@
 //!
 //! Gains glide to those of the place reported last, a step every cell of the absolute sample grid,
 //! and inside a cell along a straight line, which is the same impulses twice: fading out with the
-//! gains that were, fading in with those that come. So the bank hears no step, whatever the blocks.
+//! gains that were, fading in with those that come. So the bank gets no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
 use crate::resource::bank::ContactKey;
@@ -86,7 +86,7 @@ impl Slider {
         }
     }
 
-    /// Forgets what is on its way.
+    /// Drops what is on its way.
     pub(crate) fn silence(&mut self) {
         self.contacts_n_s.fill(0.0);
         self.touched = false;

@@ -1,8 +1,8 @@
 //! Changed tiles: which parts of a grid of cells may differ from what was shown of them last.
 //!
-//! Whoever changes a rectangle of cells marks it; whoever shows the grid looks at the marked tiles
-//! alone and begins anew. A mark too many costs a look, a mark too few would show what is no longer
-//! there.
+//! The side that changes a rectangle of cells marks it; the one that shows the grid looks at the
+//! marked tiles alone and begins anew. A mark too many costs a look, a mark too few would show what
+//! is no longer there.
 
 /// Side of a tile, cells; those at the right and lower edge may be smaller.
 pub const TILE_CELLS: usize = 32;

@@ -78,7 +78,7 @@ pub fn deband(map: &Raster, step: f64, wrap: Wrap) -> Raster {
 /// Columns and rows of a map.
 type Tile = [Range<usize>; 2];
 
-/// Puts what explains a tile of the map over this radius into its place; tells if anything does.
+/// Puts what explains a tile of the map over this radius into its place; returns if anything does.
 /// Tile by tile a large map needs little memory beside its own, and the numbers of a tile stay in
 /// the cache.
 fn smooth_tile(

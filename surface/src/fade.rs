@@ -28,7 +28,7 @@ pub struct Fade<T: Copy> {
 }
 
 impl<T: Copy> Fade<T> {
-    /// A settled value, for the rate of [`Setup::default`] until [`prepare`](Self::prepare) tells
+    /// A settled value, for the rate of [`Setup::default`] until [`prepare`](Self::prepare) sets
     /// another.
     pub fn new(value: T) -> Self {
         let length = fade_samples(Setup::default().sample_rate_hz);

@@ -43,7 +43,7 @@ pub enum Extension {
 pub struct Properties {
     /// The wavelengths it represents: every one that it can be steered to.
     pub band: WavelengthBand,
-    /// Largest distance of its heights from zero, metres; 0 if it cannot tell.
+    /// Largest distance of its heights from zero, metres; 0 if that is unknown.
     pub reach_m: f64,
     /// Continuation beyond a tile.
     pub extension: Extension,

@@ -34,7 +34,7 @@ use asperity_dsp::DesignError;
 use extent::check;
 use std::sync::Arc;
 
-/// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard
+/// Coulomb friction coefficient of a map by default: a dry finger on smooth hard
 /// material. Assumed; measured values range from 0.2 to above 1.
 pub const FRICTION: f64 = 0.5;
 

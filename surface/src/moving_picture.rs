@@ -1,7 +1,7 @@
-//! Moving picture: heights of a surface that changes, tile by tile, for whoever draws it.
+//! Moving picture: heights of a surface that changes, tile by tile, for a program that draws it.
 //!
 //! The simulation writes tiles that changed, a reader takes those it has not seen; neither waits.
-//! What is drawn is always the latest: a reader that comes late loses what lay between, and is told
+//! What is drawn is always the latest: a reader that comes late loses what lay between, and gets
 //! how many states of tiles that was.
 //!
 //! ```text
@@ -108,9 +108,9 @@ impl MovingPicture {
     }
 
     /// Writes the tiles that differ from what the picture shows, of a surface whose cells lie at
-    /// `height_m(column, row)`, m. Tells how many were written. Only `changed` tiles are looked at,
-    /// and those that were never shown; the marks are then taken away. There is one writer; nothing
-    /// is written before somebody looks.
+    /// `height_m(column, row)`, m. Returns how many were written. Only `changed` tiles are looked
+    /// at, and those that were never shown; the marks are then taken away. There is one writer;
+    /// nothing is written before somebody looks.
     pub fn write(&self, changed: &mut ChangedTiles, height_m: impl Fn(usize, usize) -> f32) -> usize {
         let Some(shown) = self.shown.get() else { return 0 };
         let is_new = |tile: usize| shown.versions[tile].load(Ordering::Relaxed) == 0;
@@ -155,7 +155,7 @@ impl MovingPicture {
 }
 
 impl PictureReader {
-    /// Shows every tile that has changed since the last call, as it is now; tells how many.
+    /// Shows every tile that has changed since the last call, as it is now; returns how many.
     pub fn changed(&mut self, mut show: impl FnMut(PictureTile<'_>)) -> usize {
         let Some(shown) = self.picture.shown.get() else { return 0 };
         let mut count = 0;

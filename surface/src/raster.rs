@@ -2,7 +2,7 @@
 
 /// One channel of an image, or a height map: rows from top to bottom, each from left to right.
 ///
-/// Values are 0–1 for images and metres for heights; whoever makes one says which.
+/// Values are 0–1 for images and metres for heights; the maker of one says which.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Raster {
     /// Texels in a row.

@@ -13,7 +13,7 @@
 //! | A | [`SolidNoiseParameters::amplitude_m`], metres per unit of magnitude (ours: the document has forces only) |
 //! | L, cap | [`SolidNoiseParameters::limit_n`], newton per unit of magnitude, and [`SolidNoiseParameters::cap_n`] |
 //! | b | [`SolidNoiseParameters::viscosity_n_s_m`], the "viscous cube" around the pebbles |
-//! | x | [`SolidCut`]: where the surface cuts the block, or the place in the body that a contact tells; less the way that the block has
+//! | x | [`SolidCut`]: where the surface cuts the block, or the place in the body that a contact reports; less the way that the block has
 //! [flowed](SolidNoiseParameters::flow_m_s), as the document's water and wind do |
 //!
 //! Source: the solid-noise paper, equations 3 and 4 and Table 1. What we read differently: the

@@ -201,7 +201,7 @@ impl AudioHalf {
     }
 }
 
-/// Tells the engine which share of its time the last block took (1 = all of it); above that the
+/// Reports which share of its time the last block took (1 = all of it); above that the
 /// least audible work is left out. For the audio thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_report_load(renderer: *mut asp_renderer, load: f32) {

@@ -132,7 +132,7 @@ pub extern "C" fn asp_position() -> f64 {
     position as f64
 }
 
-/// Tells the engine which share of its time the last block took; above all of it the least audible
+/// Reports which share of its time the last block took; above all of it the least audible
 /// work is left out.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_report_load(load: f32) {

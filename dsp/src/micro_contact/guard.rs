@@ -114,7 +114,7 @@ impl CleanGround {
         clean
     }
 
-    /// The first so many of them, as many as `ground` knows.
+    /// The first so many of them, as many as `ground` holds.
     pub fn ground(&self, ground: SubSampleProfile<'_>, count: usize) -> SubSampleProfile<'_> {
         match ground {
             SubSampleProfile::AtSamples => SubSampleProfile::AtSamples,

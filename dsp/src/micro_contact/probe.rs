@@ -53,7 +53,7 @@ pub struct Probe {
     /// Separation beyond which upward motion stops, m; 1e-6 to 0.05.
     pub leash_m: f64,
     /// Radius of the sphere that rides on the surface, m; 0 (a point) to 0.1. The contact model
-    /// does not see it: it is for whoever makes the heights.
+    /// does not see it: it is for the source of the heights.
     pub tip_radius_m: f64,
     /// n of k_m ∝ Fⁿ, F the pressing force in newtons; 0 (always `contact_stiffness_n_m`) to 1.
     pub force_exponent: f64,

@@ -19,7 +19,7 @@ use crate::simd::Level;
 /// Inputs of a bank.
 #[derive(Debug, Clone, Copy)]
 pub enum Inputs<'a> {
-    /// One input that every mode hears at gain 1: the impulse of each sample, N·s.
+    /// One input that every mode takes at gain 1: the impulse of each sample, N·s.
     One(&'a [f32]),
     /// Up to [`MAX_INPUTS`](super::MAX_INPUTS) inputs, each with a gain for every mode; more are
     /// not heard.
@@ -135,7 +135,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         );
     }
 
-    /// Forgets all that rings.
+    /// Silences all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
         self.active_groups.sleep();

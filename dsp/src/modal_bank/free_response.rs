@@ -1,4 +1,4 @@
-//! Ahead: what a bank would say in the coming 64 samples if nothing struck it, told as another
+//! Ahead: what a bank would say in the coming 64 samples if nothing struck it, stated as another
 //! output of its modes.
 //!
 //! ```text
@@ -14,7 +14,7 @@
 //!
 //! Five products a mode and four samples, as in the bank itself ([`OUT`](super::design::OUT)), and
 //! no chain of states longer than three: less than half of what a rendered bank costs. It is for
-//! what has to know the free motion before it can tell the forces
+//! what needs the free motion before it can find the forces
 //! ([`stick_slip`](crate::stick_slip)).
 #![allow(unsafe_code)]
 // `g` counts groups, `n` samples and `j` sixteenths, in several arrays at once.
@@ -31,9 +31,9 @@ use core::array::from_fn;
 use core::mem::MaybeUninit;
 use fearless_simd::SimdBase;
 
-/// Samples that are told.
+/// Samples that are predicted.
 const CELL: usize = GRID_SAMPLES as usize;
-/// Samples told from one state.
+/// Samples predicted from one state.
 const STEP: usize = 16;
 /// Turns of it.
 const TURNS: usize = STEP / TURN;
@@ -53,7 +53,7 @@ impl FreeResponse {
     pub const SILENT: Self =
         Self { output_gains: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
 
-    /// Up to 16 modes as the other output hears them: frequencies and decays of the bank's, other
+    /// Up to 16 modes as the other output takes them: frequencies and decays of the bank's, other
     /// amplitudes and phases. Modes at or above the Nyquist frequency are silent.
     ///
     /// # Errors

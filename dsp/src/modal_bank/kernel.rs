@@ -13,7 +13,7 @@ pub(super) struct Kernel(pub Level);
 
 impl Kernel {
     /// Adds the bank's response to `impulses_n_s` to `out`; sample 0 of both is the absolute sample
-    /// `first_sample`, which goes on where the last call ended. Every lane hears the one input at
+    /// `first_sample`, which goes on where the last call ended. Every lane takes the one input at
     /// gain 1. Slices of unequal length are used as far as the shortest reaches.
     pub(super) fn render(
         self,

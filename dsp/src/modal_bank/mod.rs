@@ -60,8 +60,8 @@
 //! [`SLEEP_AMPLITUDE`].
 //!
 //! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what
-//! sleeps. [`FreeResponse`] tells what they will do by themselves, [`Culling`] says which modes are
-//! worth it, [`OnsetCorrection`] what the impulse ring takes from the beginning of a strike.
+//! sleeps. [`FreeResponse`] predicts what they will do by themselves, [`Culling`] says which modes
+//! are worth it, [`OnsetCorrection`] what the impulse ring takes from the beginning of a strike.
 
 mod active_groups;
 mod bank;

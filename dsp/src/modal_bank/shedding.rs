@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Importance is that of [`crate::masking`]. Where tables are dense the level leaves out most of
-//! the work and nobody hears it (5 of 16 groups are left, 59 % of the bank's time is saved). Where
+//! the work inaudibly (5 of 16 groups are left, 59 % of the bank's time is saved). Where
 //! nothing hides anything it still takes two fifths, because a machine that is late has to be
 //! helped. Where that is more than the model hides, what is heard goes on by the model, or by how
 //! long it rings, whichever keeps more of the power: where the loudest stand close the model hides
@@ -25,7 +25,7 @@ use crate::mode::Mode;
 /// Levels of modes left out: none, and what is not missed.
 pub const MODE_LEVELS: usize = 2;
 
-/// Sound pressure level of the loudest mode where nobody knows it, dB: speech at one metre, and
+/// Sound pressure level of the loudest mode where it is unknown, dB: speech at one metre, and
 /// where dense tables were compared.
 pub const LOUDEST_DB_SPL: f64 = 70.0;
 
@@ -44,8 +44,8 @@ const fn most_at(level: usize, groups: usize) -> usize {
 }
 
 /// Puts modes in the order in which a bank is best built of them, where impulses of about
-/// `impulse_n_s` strike it and the loudest mode is at `loudest_db_spl`; tells how many groups of it
-/// hear at each level. `order` has a place for each mode.
+/// `impulse_n_s` strike it and the loudest mode is at `loudest_db_spl`; returns how many groups of
+/// it hear at each level. `order` has a place for each mode.
 ///
 /// A body of one group stays in the order of ringing.
 pub fn shedding_order(

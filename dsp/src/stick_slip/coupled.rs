@@ -10,14 +10,14 @@
 //! | symbol | here |
 //! |---|---|
 //! | ṽ | what a [`place_speed`] output of the bank says ahead of the cell ([`ModalBank::ahead`](crate::modal_bank::ModalBank::ahead)): the free motion |
-//! | c_t | the five taps through which a bank hears a force ([`FORCE_TAPS`]) |
+//! | c_t | the five taps through which a bank takes a force ([`FORCE_TAPS`]) |
 //! | f_i | what the bank still has to hear in the cell's sample i of the forces before it |
 //! | U, g | [`Answer`], m/s a newton |
 //! | F | [`Coupled::run`] |
 //!
 //! The modes are linear, so what a force does within its own cell is a sum over its few samples,
 //! and what it does later is in the states once the bank has heard it. So the bank is rendered
-//! once, with the forces, for the sound; before that it tells the free motion of the cell, and a
+//! once, with the forces, for the sound; before that it gives the free motion of the cell, and a
 //! force, once it is known, is added to the speeds of all later samples of the cell at once: what a
 //! sample has to wait for is the one product with the force before it. The sum is the plain step's
 //! to rounding ([`RubbedBody`](super::RubbedBody)): nothing is a sample late and nothing is

@@ -174,7 +174,7 @@ struct Pressed {
 }
 
 impl Pressed {
-    /// The force at a speed, of which it hears u + u_s twice.
+    /// The force at a speed, of which it takes u + u_s twice.
     #[inline(always)]
     fn slides_n(&self, twice_m_s: f64) -> f64 {
         self.kinetic_n + self.weaker_n_m_s / twice_m_s

@@ -16,7 +16,7 @@
 //! A hand that speeds up by 2 m/s² leaves dead reckoning by 0.3 mm between two reports at 60 Hz, a
 //! seventh of a 2 mm grating's period and more than a finger's whole path error otherwise. A finger
 //! that stops dead or meets an edge is predicted by neither, so that the trust is gone with the
-//! very report that tells of it, and the path goes on as dead reckoning does; so it is where
+//! very report that holds it, and the path goes on as dead reckoning does; so it is where
 //! reports are noisy, or a game's velocities do not belong to its places.
 
 /// Weight of the past in what has been predicted.

@@ -132,7 +132,7 @@ impl DeadReckoning {
         self.lost || self.velocity_m_s != [0.0; 2] && gap_s > believed_s
     }
 
-    /// Forgets the velocity.
+    /// Clears the velocity.
     pub fn stop(&mut self) {
         self.lost |= self.velocity_m_s != [0.0; 2];
         self.velocity_m_s = [0.0; 2];

@@ -127,7 +127,7 @@ impl Renderer {
         }
     }
 
-    /// Takes a voice for a contact that begins, if its surface is there, and tells which.
+    /// Takes a voice for a contact that begins, if its surface is there, and returns which.
     fn begin(
         &mut self,
         contact: ContactId,

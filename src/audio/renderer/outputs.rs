@@ -282,7 +282,7 @@ impl Renderer {
         }
     }
 
-    /// Tells the game how loud each bus is.
+    /// Reports to the game how loud each bus is.
     pub(super) fn show_levels(&mut self) {
         self.counters.limiter_db.store(self.limiter_db() as u64, Relaxed);
         for (cell, bus) in self.counters.bus_peak_bits.iter().zip(&mut self.buses) {

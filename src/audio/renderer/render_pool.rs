@@ -4,7 +4,7 @@
 //! remember who touched it, and in which order: its contacts are rendered one after the other as on
 //! one thread. A body that rings is a job of its own. Jobs own what they work on (boxes change
 //! hands, nothing is copied), the dearest go out first, and every sum is made on the audio thread
-//! in the order of voices and bodies: the bits are those of one thread, whoever ran what.
+//! in the order of voices and bodies: the bits are those of one thread, wherever each ran.
 //!
 //! *No waiting between the two.* The audio thread takes contacts as they come home, in their order,
 //! and sends a body out as soon as the last contact that touches it has been added up: others ring

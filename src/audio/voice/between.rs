@@ -10,7 +10,7 @@
 //! Known midway a twenty-fifth of e is left, at the quarters a three-hundredth. A stroke of 0.05
 //! m/s under 0.8 N pays on no roughness up to 0.8. A stroke of 0.1 m/s under 0.5 N on wood takes a
 //! tenth more where it is looked at midway; without, the demo's third octaves move by 0.007 dB in
-//! the median and 0.33 at most. Only for the integrator that knows events. Beginning anew costs
+//! the median and 0.33 at most. Only for the integrator of events. Beginning anew costs
 //! three samples of cubic, hence the hysteresis. Its price:
 //! `dsp::micro_contact::QuarticCorrections`.
 

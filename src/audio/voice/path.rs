@@ -1,6 +1,6 @@
 //! Path: sparse reports become a point every sample (`dsp::trajectory`).
 //!
-//! A contact with a body that is no plane, a sphere of solid noise for instance, tells its place
+//! A contact with a body that is no plane, a sphere of solid noise for instance, reports its place
 //! there too; those three coordinates go through the same filter, two by two.
 
 use crate::model::event::ContactSample;
@@ -21,7 +21,7 @@ pub(super) struct Path {
     trajectory: Trajectory,
     /// Point of the last sample.
     pub(super) last: PathPoint,
-    /// Place in the body, where that is told: x with y, and z.
+    /// Place in the body, where that is reported: x with y, and z.
     in_body: Option<[Trajectory; 2]>,
 }
 
@@ -42,7 +42,7 @@ impl Path {
         event.normal_force_n
     }
 
-    /// The next points, and the places in the body where those are told.
+    /// The next points, and the places in the body where those are reported.
     pub(super) fn run(
         &mut self,
         slot: &SurfaceSlot,
@@ -55,7 +55,7 @@ impl Path {
         }
     }
 
-    /// Tests whether places in the body are told.
+    /// Tests whether places in the body are reported.
     pub(super) fn is_in_body(&self) -> bool {
         self.in_body.is_some()
     }

@@ -28,7 +28,7 @@ pub(super) struct Along<'a> {
 pub(super) struct Profile {
     position_m: [[f64; 2]; MAX_BLOCK],
     velocity_m_s: [[f64; 2]; MAX_BLOCK],
-    /// Places in the body, for a contact that tells them, m.
+    /// Places in the body, for a contact that reports them, m.
     pub(super) at_m: [[f64; 3]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
     noise_footprint_m: [f64; MAX_BLOCK],

@@ -2,7 +2,7 @@
 //! (`dsp::rolling`).
 //!
 //! Heights in, heights out, and before the body impulses in, impulses out. The share of rolling
-//! goes along a straight line between two steps of the absolute grid. A contact whose reports tell
+//! goes along a straight line between two steps of the absolute grid. A contact whose reports state
 //! no slip slides, and its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;

@@ -8,7 +8,7 @@
 //! ```
 //! A body and a probe are held whole. A surface is held as its table of the scene file (`is`, with
 //! paths relative to `folder`); one that the game's own code has made cannot be written down, and
-//! whoever replays the log makes it under the same name.
+//! the program that replays the log makes it under the same name.
 
 use crate::model::body::Body;
 use crate::model::material::Material;
@@ -117,7 +117,7 @@ pub enum LogEdit {
         /// Its name.
         surface: String,
     },
-    /// Parameters of a surface's source change; which and how only the game knows.
+    /// Parameters of a surface's source change; which and how is the game's own.
     ChangeSurface {
         /// Its name.
         surface: String,

@@ -1,7 +1,7 @@
 //! The scene file: one TOML table a thing, in SI units, every key checked and named when refused.
 //!
 //! This file and its neighbours hold what a user wrote, as plain data with paths already relative
-//! to the file. Nothing here opens an image or knows the engine;
+//! to the file. Nothing here opens an image or uses the engine;
 //! [`Engine::from_scene`](crate::Engine::from_scene) turns a [`SceneFile`] into engine calls.
 
 mod body;

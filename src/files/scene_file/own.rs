@@ -1,5 +1,5 @@
-//! `own = { kind = "NAME", … }`: a source that the engine does not know, made by whoever opens the
-//! scene.
+//! `own = { kind = "NAME", … }`: a source from outside the engine, made by the program that opens
+//! the scene.
 
 use super::fields::Fields;
 use crate::files::FileError;
@@ -20,7 +20,7 @@ pub struct OwnSource {
 ///
 /// A function: it captures nothing. What it makes is steered with
 /// [`Scene::change_surface`](crate::Scene::change_surface), by the id that
-/// [`Engine::names`](crate::Engine) tells; a source that is to hold a handle of its own (an `Arc`)
+/// [`Engine::names`](crate::Engine) holds; a source that is to hold a handle of its own (an `Arc`)
 /// is added in code, by `Surface::new`. It may be called more than once for a surface: where a
 /// scene leaves levels out, reference strokes touch a copy.
 pub type MakeSource = fn(&OwnSource, [f64; 2]) -> Result<Box<dyn HeightField>, FileError>;

@@ -81,7 +81,7 @@ struct Tie {
     ahead: bool,
 }
 
-/// The smallest of what tells how far the game is ahead, since `began`.
+/// The smallest measure of how far the game is ahead, since `began`.
 #[derive(Debug, Clone)]
 struct Window {
     began: f64,
@@ -109,7 +109,7 @@ impl Live {
         *self = Self { pace: self.pace, ..Self::new(max_lead_s, sample_rate_hz) };
     }
 
-    /// Forgets the tie; the next stamp holds at the next sample.
+    /// Clears the tie; the next stamp holds at the next sample.
     pub fn untie(&mut self) {
         self.tied = None;
         self.pace = 1.0;

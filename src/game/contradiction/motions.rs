@@ -3,7 +3,7 @@
 //! A report holds a place and a velocity. From one report of a contact to the next its place moves
 //! by `d = Δuv · size`, and its velocity says `e = ½ (v₀ + v₁) Δt`. Whoever writes uv in
 //! millimetres or a velocity in uv a second has `|d| / |e|` wrong by the same factor at every step,
-//! and the factor tells which. Medians over the steps on a surface are compared, so that teleports,
+//! and the factor shows which. Medians over the steps on a surface are compared, so that teleports,
 //! hitches and the first step of a stroke do not count; a motion whose factors scatter (a crate
 //! that rests on this corner and that) is not judged.
 //!
@@ -41,7 +41,7 @@ const FIELDS_AN_OCTAVE: f64 = 16.0;
 const FIELDS: usize = 640;
 /// Longer steps than this are no game's, s: times in milliseconds.
 const LONG_STEP_S: f64 = 0.3;
-/// A factor that is told lies beyond this one or its inverse.
+/// A factor that is reported lies beyond this one or its inverse.
 const FACTOR: f64 = 2.0;
 /// Fields on either side of the median that count as its own.
 const NEAR: usize = 8;
@@ -86,7 +86,7 @@ struct Tally {
     reports: u32,
     begins_again: u32,
     leaps: u32,
-    /// Hops of contacts that tell no velocity.
+    /// Hops of contacts without a velocity.
     hops: u32,
     steps: u32,
     agree: u32,
@@ -109,7 +109,7 @@ impl Motions {
         self.tallies.remove(&surface);
     }
 
-    /// Notes an accepted event; `sheet` tells the surface's size, and a contact that is silent for
+    /// Notes an accepted event; `sheet` gives the surface's size, and a contact that is silent for
     /// `timeout_s` has ended.
     pub(crate) fn note(
         &mut self,

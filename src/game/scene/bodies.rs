@@ -173,7 +173,7 @@ impl Scene {
         let sends = body.sends;
         let strike_gain = within("strike_gain", level.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
-        // A pickup may read what nobody hears.
+        // A pickup may read what is inaudible.
         let audible = self.config.culling.filter(|_| rested.is_none() && body.pickups.is_empty());
         let audible = audible.map(|culling| model.audible(rate, &culling));
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
@@ -207,7 +207,7 @@ impl Scene {
     }
 
     /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB;
-    /// where nobody knows, that of speech.
+    /// where it is unknown, that of speech.
     fn loudest_db_spl(&self, body: &Body, strike_gain: f64) -> f64 {
         let loudest = body.model.modes.iter().fold(0.0, |most, mode| f64::max(most, mode.amplitude.abs()));
         let known =

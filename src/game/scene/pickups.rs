@@ -28,8 +28,8 @@ impl Scene {
         self.replace_body(body, given.pickup(pickup))
     }
 
-    /// Tells the accelerometers of a body how it moves as a whole: they read it from there on, in a
-    /// straight line over the time since the report before.
+    /// Sets for the accelerometers of a body how it moves as a whole: they read it from there on,
+    /// in a straight line over the time since the report before.
     pub(super) fn report_motion(
         &mut self,
         time_s: f64,

@@ -31,7 +31,7 @@ impl Scene {
         self.recording.take().map(|recording| recording.end().0).unwrap_or_default()
     }
 
-    /// Ends a streamed recording, waits until it is written, and tells how many lines there are.
+    /// Ends a streamed recording, waits until it is written, and returns how many lines there are.
     ///
     /// # Errors
     /// When it could not be written.

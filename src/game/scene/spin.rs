@@ -1,6 +1,6 @@
 //! Spin: what slips faster than it moves, a wheel that turns on the spot or slows down locked.
 //!
-//! Its own relief runs over the place of contact then. The engine knows the ground's: that runs on
+//! Its own relief runs over the place of contact then. The engine has the ground's: that runs on
 //! under the contact with what the slip has over the path, in the direction of the path or along u,
 //! and stays where it came to until the contact ends. A slip up to the path's speed changes
 //! nothing.
@@ -24,7 +24,7 @@ pub(super) struct Spin {
 }
 
 impl Spin {
-    /// Place of the last report as it was told.
+    /// Place of the last report as it came.
     pub(super) fn uv(&self) -> Option<[f64; 2]> {
         self.uv
     }
@@ -35,7 +35,7 @@ impl Spin {
         let elapsed_s = (now_s - self.told_s).clamp(0.0, LONGEST_S);
         self.run_m = [0, 1].map(|i| self.run_m[i] + self.runs_m_s[i] * elapsed_s);
         self.told_s = now_s;
-        // A velocity that is not told is 0 where the place stays, and unknown where it moves.
+        // A velocity that is not reported is 0 where the place stays, and unknown where it moves.
         let stays = self.uv.replace(sample.uv) == Some(sample.uv);
         let path_m_s = sample.velocity_m_s.or(stays.then_some([0.0; 2]));
         self.runs_m_s = match (path_m_s, sample.slip_m_s) {

@@ -39,7 +39,7 @@ pub struct DeviceInfo {
     pub id: String,
     /// Name for people.
     pub name: String,
-    /// Channels of its default configuration; 0 when it tells none.
+    /// Channels of its default configuration; 0 when it names none.
     pub channels: u16,
     /// Rate of its default configuration, Hz; 0 when it tells none.
     pub sample_rate_hz: u32,
@@ -119,7 +119,7 @@ fn describe(device: &cpal::Device) -> Option<DeviceInfo> {
 /// wins.
 ///
 /// # Errors
-/// When the host or device is not there or does not tell.
+/// When the host or device is not there or names none.
 pub fn sample_rate_hz(options: &DeviceOptions) -> Result<f64, DeviceError> {
     let device = streams::find(options.host.as_deref(), options.device.as_deref())?;
     Ok(f64::from(device.default_output_config()?.sample_rate()))
@@ -138,7 +138,7 @@ pub struct DeviceReport {
     pub haptic_underruns: u64,
     /// Frames of the last callback.
     pub callback_frames: u64,
-    /// Distance from callback to ear or skin, s, as the device tells; 0 where it does not.
+    /// Distance from callback to ear or skin, s, as the device states; 0 where it does not.
     pub latency_s: f64,
     /// Mean share of the callbacks' time that rendering took.
     pub mean_load: f64,
@@ -248,8 +248,8 @@ impl Player {
         &self.device
     }
 
-    /// Stops the sound and tells what the device met. Of a null sink, callbacks are its blocks and
-    /// underruns the blocks that were late.
+    /// Stops the sound and returns what the device met. Of a null sink, callbacks are its blocks
+    /// and underruns the blocks that were late.
     #[must_use]
     pub fn stop(mut self) -> DeviceReport {
         let pace = match &mut self.engine {
@@ -271,7 +271,7 @@ impl Player {
         }
     }
 
-    /// Counters of the device so far; of a null sink only [`stop`](Self::stop) tells.
+    /// Counters of the device so far; of a null sink only [`stop`](Self::stop) has them.
     #[must_use]
     pub fn report(&self) -> DeviceReport {
         let meters = &self.meters;

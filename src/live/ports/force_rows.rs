@@ -1,5 +1,5 @@
 //! Force rows: the 3-D force on the finger at the ticks of a device's own rate, low-passed so that
-//! no tick hears what lies beyond it.
+//! no tick takes what lies beyond it.
 //!
 //! ```text
 //! row(k, contact) = Σ h(τ − k) F(τ) / Σ h(τ − k)        τ: time of a sample in ticks, |τ − k| < 4
@@ -11,8 +11,8 @@
 //! A row is the force at its tick's own instant: flat within 0.3 % up to a quarter of the rate, 50
 //! dB down from 0.66 of it on. (A mean over the tick lets 900 Hz through a 1 kHz output at −19 dB,
 //! as 100 Hz, and speaks of the middle of the tick.) It is complete 4 ticks later. The weights of
-//! what a contact has told are brought to 1, so that a constant force is itself from the first row
-//! to the last.
+//! what a contact has reported are brought to 1, so that a constant force is itself from the first
+//! row to the last.
 //!
 //! A filter with a steep edge swings about a jump of the force, by up to 9 % of it, before it as
 //! after it. Two limits come after it therefore: a row is no larger than what the device gives, and
@@ -32,7 +32,7 @@ const KAISER_BETA: f64 = 5.0;
 /// Values of h between two ticks.
 const STEPS: usize = 512;
 
-/// Whose force a row tells.
+/// Owner of a row's force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
     /// One contact's.
@@ -121,7 +121,7 @@ impl ForceRows {
     #[must_use]
     pub fn new(rate_hz: f64, sample_rate_hz: f64, contacts: usize) -> Self {
         let ticks_a_sample = rate_hz / sample_rate_hz;
-        // Closed at least once a block; what is told meanwhile reaches 4 ticks either way.
+        // Closed at least once a block; what comes meanwhile reaches 4 ticks either way.
         let told = (2.0 * MAX_BLOCK as f64 * ticks_a_sample).ceil() as u64;
         let span = (2 * LAG_TICKS + told + 4).next_power_of_two();
         let rows = || vec![OpenRow::EMPTY; span as usize].into_boxed_slice();
@@ -347,7 +347,7 @@ mod tests {
             };
             assert!(told.iter().filter(in_the_air).count() as f64 > 0.18 * rate_hz);
             assert!(told.iter().filter(in_the_air).all(|row| row.force_n == [0.0; 3]));
-            // What touches is told at once.
+            // What touches is reported at once.
             let touch = told.iter().find(|row| time_s(row) >= 0.1 + 1.0 / rate_hz).unwrap();
             assert!(size_n(touch) > 15.0, "{touch:?}");
         }

@@ -8,11 +8,11 @@
 //! | [`Points`] | an amplitude and a frequency some hundred times a second | a phone, a headset |
 //! | [`HeadsetFrames`] | those points as OpenXR's parametric frames | the controllers of a headset |
 //! | [`Levels`] | how hard a heavy and a light motor turn | a pad that rumbles |
-//! | [`Picture`] | the heights of a surface that changes | whoever draws it |
+//! | [`Picture`] | the heights of a surface that changes | a program that draws it |
 //!
 //! [`Scene::open_port`](crate::Scene::open_port) gives the reading end, which may go to any one
-//! thread and be read at any pace: nothing waits for it, and whoever comes late loses the oldest
-//! and is told how much. Dropping it closes the port. A kind is one file: what is wanted as plain
+//! thread and be read at any pace: nothing waits for it, and a late reader loses the oldest
+//! and gets the number. Dropping it closes the port. A kind is one file: what is wanted as plain
 //! data, the end on the audio half ([`Outlet`]), the reading end.
 //!
 //! ```

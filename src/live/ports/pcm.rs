@@ -70,8 +70,8 @@ impl Outlet for PcmOutlet {
 }
 
 impl PcmPort {
-    /// Copies the oldest samples that are left into `out`; tells how many. What lies behind them in
-    /// `out` stays as it was.
+    /// Copies the oldest samples that are left into `out`; returns how many. What lies behind them
+    /// in `out` stays as it was.
     pub fn read(&mut self, out: &mut [f32]) -> usize {
         let mut count = 0;
         while count < out.len() {

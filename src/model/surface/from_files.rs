@@ -26,7 +26,7 @@ impl Surface {
     }
 
     /// A surface from a displacement map alone, repeated; its roughness is the middle of the scale
-    /// unless told otherwise.
+    /// by default.
     ///
     /// # Errors
     /// As [`from_maps`](Self::from_maps).

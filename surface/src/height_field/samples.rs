@@ -144,7 +144,7 @@ impl Default for SurfaceBlock {
 
 /// The wavelengths a source represents, metres. Where it has relief the engine adds the paper's
 /// micro-noise only below `shortest_m`, so that no scale is rough twice ([`SurfaceBlock::power`]
-/// tells where).
+/// says where).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthBand {
     /// Shortest wavelength in the source; `f64::INFINITY` for a source without any relief.

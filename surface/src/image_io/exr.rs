@@ -3,7 +3,7 @@
 //!
 //! A channel is called `R`, `Y` or `V`, or by its layer first: `displacement.R`, `Depth.Z`. A file
 //! has layers of that kind, or parts that are named, or both. The layer without a name is the
-//! picture; without one, the only layer is. Where several have names, nobody knows which is the
+//! picture; without one, the only layer is. Where several have names, it is unknown which is the
 //! map. Values stay as they are; pixels outside the data window are 0.
 //!
 //! Source: OpenEXR, "Technical introduction" and "Standard attributes" (channel names).
@@ -15,7 +15,7 @@ use exr::meta::header::Header;
 
 /// Names that channels of a picture go by, in the order of a pixel.
 const COLOURS: [[&str; 4]; 2] = [["R", "G", "B", "A"], ["X", "Y", "Z", "A"]];
-/// Layer names that are told of a file that has several.
+/// Layer names that are reported of a file that has several.
 const TOLD: usize = 6;
 
 /// A layer: its part, its name, and the channels there in the order of a pixel.

@@ -6,7 +6,7 @@ use crate::raster::Raster;
 impl Picture {
     /// Means of the brightness ([`Channel::Luma`]) of `n` × `n` pixels, at least 1, as 0–1; what
     /// does not fill one at the right and lower border is left out. To the bit the means of
-    /// [`Picture::channel`]: whoever reads all of a picture first finds the same surface.
+    /// [`Picture::channel`]: a program that reads all of a picture first finds the same surface.
     ///
     /// # Errors
     /// When a value is not finite.

@@ -1,4 +1,5 @@
-//! Normal map, told from other pictures: its pixels are unit vectors that point out of the surface.
+//! Normal map, recognised among pictures: its pixels are unit vectors that point out of the
+//! surface.
 //!
 //! ```text
 //! n = 2 (r, g, b) − 1,   |n| = 1,   n_z > 0

@@ -73,7 +73,7 @@ pub(super) struct Slot {
     pub(super) fade_start: u64,
     /// Sample of the next touch, if the contact stays down; `None` before the first.
     pub(super) next_touch: Option<u64>,
-    /// The simulation has not been told yet that the contact has landed.
+    /// The simulation has not been informed yet that the contact has landed.
     pub(super) landed: bool,
 }
 

@@ -5,7 +5,7 @@
 //! frame's length. Its depth is the one at which the sand carries the contact's normal force
 //! (`law`), below the level of the sand around it (the median on a circle outside the heap). Then
 //! the sand slides for as many passes as the frame's budget of cells allows; where a tool stands it
-//! is a wall, so that nothing trickles into the cut it fills. A contact that was not told of in a
+//! is a wall, so that nothing trickles into the cut it fills. A contact that was not reported in a
 //! frame is lifted.
 
 mod drag;
@@ -108,7 +108,7 @@ pub struct SandSimulation {
     volume_before_units: i64,
     /// Deepest that a tool stood below the untouched bed, metres.
     print_m: f64,
-    /// For whoever draws the sand.
+    /// For a program that draws the sand.
     moving_picture: Arc<MovingPicture>,
     /// Part that was not shown yet.
     changed: ChangedTiles,
@@ -207,7 +207,7 @@ impl SandSimulation {
         self.tracks.len()
     }
 
-    /// Tells where a contact is; the last pose before a frame counts.
+    /// Sets where a contact is; the last pose before a frame counts.
     pub fn set_pose(&mut self, pose: Pose) {
         let finite = pose.position_m.iter().chain(&pose.velocity_m_s).all(|x| x.is_finite());
         if let Some(track) = self.tracks.get_mut(pose.contact).filter(|_| finite) {

@@ -1,6 +1,6 @@
 //! Memory in which a block of a map is worked out.
 //!
-//! It belongs to the block that is filled, which whoever asks has at hand: one of every map's own
+//! It belongs to the block that is filled, which the caller has at hand: one of every map's own
 //! would be far away, one on the stack would have to be cleared for every block.
 
 use super::{Places, Samples};

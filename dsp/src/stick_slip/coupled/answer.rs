@@ -11,7 +11,7 @@ use core::f64::consts::PI;
 /// Modes side by side while an answer is designed.
 const LANES: usize = 16;
 
-/// A mode that sounds as the speed of a rubbed place, m/s, when it hears impulses of N·s along the
+/// A mode that sounds as the speed of a rubbed place, m/s, when it takes impulses of N·s along the
 /// motion through the taps of a force. `motion` is the product of its motions where it is pushed
 /// and where it is looked at, 1/kg.
 ///

@@ -7,7 +7,7 @@
 //! give the same sand as one pair after another.
 //!
 //! A wall is so low that its difference to any sand, wrapped to 32 bits, is above that of any sand
-//! to any other: one comparison tells both that a slope is too steep and that it is one of sand.
+//! to any other: one comparison shows both that a slope is too steep and that it is one of sand.
 use super::TILE;
 use crate::sand::grid::{SPAN, SandGrid};
 use asperity_dsp::simd::{Level, at_level};

@@ -34,7 +34,7 @@ impl Way {
 }
 
 impl SandSimulation {
-    /// Takes what a contact was told; one that was lifted leaves its print.
+    /// Takes what a contact was given; one that was lifted leaves its print.
     pub(super) fn set_out(&mut self, contact: usize) {
         let track = &mut self.tracks[contact];
         let told = track.told.take();

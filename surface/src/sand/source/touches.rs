@@ -1,4 +1,4 @@
-//! Touches of sand: what a contact tells the simulation, and what it is told.
+//! Touches of sand: what a contact gives the simulation, and what it gets.
 
 use super::super::around::{Around, level_around, seen_level_m};
 use super::super::hand_over::{Link, Near, fade_samples, give_back};
@@ -7,9 +7,9 @@ use super::super::simulation::Pose;
 use super::SandSource;
 use crate::height_field::{MAX_BLOCK, Reaction, Touch};
 
-/// A tip's depth is told below the sand so many radii of its print around it: beyond the heap that
-/// it pushes up itself, which would tell on its own force by 2 % (twice as wide as where the tool's
-/// level is looked for).
+/// A tip's depth is stated below the sand so many radii of its print around it: beyond the heap
+/// that it pushes up itself, which would change its own force by 2 % (twice as wide as where the
+/// tool's level is looked for).
 const WIDE: f64 = 2.0;
 
 impl SandSource {
@@ -22,7 +22,7 @@ impl SandSource {
         }
     }
 
-    /// Tells the simulation about a touch and takes what it has to say.
+    /// Hands the simulation a touch and takes what it has to say.
     fn exchange(&mut self, touch: &Touch) {
         // Whoever was lifted, or comes here with a surface that was replaced, lands without being
         // announced.
