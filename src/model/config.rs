@@ -49,8 +49,8 @@ pub struct Config {
     pub path_cutoff_hz: f64,
     /// Integrator of the micro-contact model.
     pub integrator: Integrator,
-    /// The engine's own probe, for contacts that name no other: the fingertip unless told
-    /// otherwise.
+    /// The engine's own probe, for contacts that name no other: the fingertip by
+    /// default.
     pub probe: Probe,
     /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
@@ -61,8 +61,8 @@ pub struct Config {
     /// Channels of [pickups](crate::Pickup), each read by a sensor, or in SI units; by default
     /// none.
     pub pickups: Vec<Option<SensorProfile>>,
-    /// Origin of the levels of bodies and surfaces that are added; as their numbers say unless told
-    /// otherwise, shared levels that are found with [`Config::live`].
+    /// Origin of the levels of bodies and surfaces that are added; as their numbers say by
+    /// default, shared levels that are found with [`Config::live`].
     pub levels: LevelPolicy,
     /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force
     /// times speed times importance.
@@ -80,16 +80,16 @@ pub struct Config {
     /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600
     /// s, default 0.25 s.
     pub contact_timeout_s: f64,
-    /// Conversion of game time to samples: exactly, as an offline render wants it, unless told
-    /// otherwise. A game that runs now begins with [`Config::live`].
+    /// Conversion of game time to samples: exactly, as an offline render wants it, by
+    /// default. A game that runs now begins with [`Config::live`].
     pub clock: ClockMode,
     /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps
     /// all. The default costs −100 dB of error or less; [`Culling::default`] goes further, as far
     /// as the ear does.
     #[serde(with = "culling_or_none")]
     pub culling: Option<Culling>,
-    /// Lets the audio half leave out the least audible work while blocks run late, as told by
-    /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load,
+    /// Lets the audio half leave out the least audible work while blocks run late, by
+    /// [`Renderer::report_load`](crate::Renderer::report_load). Without a reported load,
     /// nothing is ever left out.
     pub shed_load: bool,
     /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact

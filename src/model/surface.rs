@@ -184,8 +184,8 @@ impl Surface {
         self
     }
 
-    /// Which of the body's strike positions contacts on this surface excite; 0 unless told
-    /// otherwise. A position the body does not have counts as its last.
+    /// Which of the body's strike positions contacts on this surface excite; 0 by
+    /// default. A position the body does not have counts as its last.
     #[must_use]
     pub fn at_strike_position(mut self, position: usize) -> Self {
         self.strike_position = position;
@@ -230,7 +230,7 @@ impl Surface {
     }
 
     /// Sets whether long waves lie under a map that has none of its own, as under real ground, for
-    /// tools; not unless told, because a finger's displacement grows by them
+    /// tools; off by default, because a finger's displacement grows by them
     /// (`docs/lab/feel.md`). Without micro-relief there are none.
     #[must_use]
     pub fn long_waves(mut self, long_waves: bool) -> Self {
