@@ -11,7 +11,7 @@ use tiny_http::{Method, Request, Server, StatusCode};
 /// Plain words.
 pub const WORDS: &str = "text/plain; charset=utf-8";
 
-/// Answers a request; whoever hangs up meanwhile is not missed.
+/// Answers a request; a client that hangs up meanwhile is not missed.
 pub fn answer(request: Request, status: u16, kind: &str, body: &[u8]) {
     let is_body_wanted = *request.method() != Method::Head;
     let mut to = request.into_writer();

@@ -64,7 +64,7 @@ pub fn plate() -> Option<HeightMap> {
     HeightMap::new(&waves, extent, Wrap::Repeat).ok()?.with_roughness_map(&rough).ok()
 }
 
-/// Tells a renderer that it is late until its governor is at this level.
+/// Reports to a renderer that it is late until its governor is at this level.
 pub fn be_late(renderer: &mut Renderer, level: usize) {
     // Its own work takes most of its time; then it is late once for each level.
     (0..31).for_each(|_| renderer.report_load(0.7));

@@ -8,7 +8,7 @@
 //! | `shapes`, one mode after the other | `shapes.phi_per_sqrt_kg` |
 //! | `acousticMaterials` | what `--material` names |
 //!
-//! Numbers are single precision there. The draft knows neither loudness nor a residual: whoever
+//! Numbers are single precision there. The draft has neither loudness nor a residual: who
 //! reads it takes a mode's loudness from its shape.
 
 pub mod binary;

@@ -1,6 +1,6 @@
 //! `asperity headroom`: how many fingers and modes fit on this machine.
 //!
-//! One thread unless told otherwise. A scene is rendered in blocks of 64 frames with events at 60
+//! One thread by default. A scene is rendered in blocks of 64 frames with events at 60
 //! Hz, as a game drives it, and every block is timed; the kernels are timed alone in many short
 //! repetitions. Every figure is the median of its blocks or repetitions, with the range of the
 //! middle eight tenths beside it.

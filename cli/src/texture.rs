@@ -76,7 +76,7 @@ fn refused(at: &Path, error: &DesignError) -> CliError {
     CliError::new(error.field, what, format!("must be {}", error.expected)).within(at.display())
 }
 
-/// A bar that is told the fraction done.
+/// A bar of the fraction done.
 fn bar(what: &'static str) -> impl FnMut(f64) {
     const STEPS: f64 = 1000.0;
     let mut progress = Progress::new(what, STEPS as u64);

@@ -223,7 +223,7 @@ fn lines() -> Vec<LogLine> {
     lines
 }
 
-/// A wooden mallet falls on a place, told as shares of the sides.
+/// A wooden mallet falls on a place, in shares of the sides.
 fn mallet(t: f64, body: &str, size_m: [f64; 3], [x, y]: [f64; 2]) -> LogLine {
     let at_m = [x * size_m[0], y * size_m[1], 0.0];
     strike(t, (body, Some(at_m)), 0.8, Striker::Preset("wood".to_owned()), (0.012, 0.01))

@@ -24,7 +24,7 @@ impl Binary {
         self.accessor(bytes, None, json!({"componentType": FLOAT, "type": "SCALAR", "count": values.len()}))
     }
 
-    /// Vectors; of places the least and the greatest are told, as the format wants of a mesh.
+    /// Vectors; of places the least and the greatest are written, as the format wants of a mesh.
     pub fn vectors<const N: usize>(&mut self, values: &[[f32; N]], places: bool) -> usize {
         let bytes = values.iter().flatten().flat_map(|x| x.to_le_bytes());
         let mut accessor = json!({"componentType": FLOAT, "type": format!("VEC{N}"), "count": values.len()});

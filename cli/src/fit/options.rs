@@ -55,7 +55,7 @@ pub struct Options {
     /// also written as OUT.strikeN.modes.json with the common frequencies
     #[arg(long, value_name = "STRIKE.wav", num_args = 1..)]
     pub merge: Vec<PathBuf>,
-    /// With --merge: the struck body with its mode shapes (a modes file of version 2); tells at
+    /// With --merge: the struck body with its mode shapes (a modes file of version 2); says at
     /// which place each strike was made and how much of their difference that explains. Nothing
     /// else changes
     #[arg(long, value_name = "BODY.modes.json", requires = "merge")]

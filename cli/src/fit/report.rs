@@ -87,7 +87,7 @@ impl Report {
         }
     }
 
-    /// Tells a person.
+    /// Writes for a person.
     pub fn in_words(&self, options: &Options) -> String {
         let mut text = format!(
             "{}: {} modes, {:.1} dB above what they leave, struck {} dB of the recording's peak, onset at {:.4} s, noise {:.0} dB; {:.1} s",
@@ -141,7 +141,7 @@ impl TableReport {
         }
     }
 
-    /// Tells a person.
+    /// Writes for a person.
     pub fn in_words(&self, options: &Options) -> String {
         let (modes, positions, warnings) = (self.modes, self.positions, output::warned(&self.warnings));
         format!("{}: {modes} modes, {positions} strike positions{warnings}", options.output.display())

@@ -72,7 +72,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Solves a mesh; where it is no body, that is told.
+    /// Solves a mesh; where it is no body, that is reported.
     fn solved(
         &mut self,
         document: &Document,

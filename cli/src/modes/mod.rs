@@ -80,7 +80,7 @@ pub fn model(
     ModalModel::parse(&text).map_err(|error| CliError::from_error(error).within(mesh.display()))
 }
 
-/// Writes the files and says nothing; `progress` hears the part done, 0 to 1.
+/// Writes the files and says nothing; `progress` gets the part done, 0 to 1.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -191,7 +191,7 @@ fn in_words(report: &Report, options: &Options) -> String {
     )
 }
 
-/// Most memory the program has held so far, MiB; only where the system tells.
+/// Most memory the program has held so far, MiB; only where the system says it.
 fn peak_mib() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

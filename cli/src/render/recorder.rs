@@ -137,7 +137,7 @@ impl Tap for Recorder {
     }
 }
 
-/// Trace rows of one stretch of time, kept until every contact has told its own.
+/// Trace rows of one stretch of time, kept until every contact has written its own.
 struct Trace {
     table: Table,
     rows: Vec<(u64, u64, [f64; 9])>,
@@ -183,7 +183,7 @@ impl Force {
         Ok(())
     }
 
-    /// Writes the rows of every tick that lies before the stretch now being told.
+    /// Writes the rows of every tick that lies before the stretch now being written.
     fn close(&mut self, before: u64) -> io::Result<()> {
         let Self { table, rate_hz, rows } = self;
         let mut written = Ok(());

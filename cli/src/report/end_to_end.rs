@@ -6,7 +6,7 @@
 //! A: the preset, its contact exact at 16 times the rate     B: the same with every mode     reference: B's impulses into a bank in f64
 //! ```
 //! A stage's share is the power of its difference over the sum of all three, so that shares sum to
-//! one. The path is the same everywhere: a straight stroke, of which reports tell the truth. What
+//! one. The path is the same everywhere: a straight stroke, of which reports are true. What
 //! sparse reports of a real one cost stands in [`super::from_reports`].
 
 use super::SAMPLE_RATE_HZ;

@@ -13,7 +13,7 @@ const ERBS: std::ops::Range<i32> = 4..40;
 const BANDS_AN_ERB: usize = 4;
 /// The loudest frame of the whole, dB SPL.
 const LOUDEST_DB_SPL: f64 = 70.0;
-/// Share of the cells that are within what is told.
+/// Share of the cells that are within what is stated.
 const MOST: f64 = 0.99;
 
 /// Missed excitation.

@@ -1,9 +1,9 @@
 //! End to end from 60 reports a second: what a path that has to be guessed between reports leaves
 //! of what is felt and heard.
 //!
-//! A hand strokes 90 mm in 0.55 s, speeding up and slowing down (minimum jerk). The reference hears
+//! A hand strokes 90 mm in 0.55 s, speeding up and slowing down (minimum jerk). The reference gets
 //! of it 2000 times a second, so that its path is the hand's but for the filter's delay, which both
-//! have. On a grating waveforms are compared; on a rough plate, where no tracker knows the finger
+//! have. On a grating waveforms are compared; on a rough plate, where no tracker has the finger
 //! well enough for that, third-octave levels in frames of 100 ms.
 
 use super::cases::{CASES, Case, Chain, FROM_REPORTS, LENGTH_M, SEEDS, STROKE_S, Signal, Take, take};
@@ -99,8 +99,8 @@ fn median_apart_db(a: &[f64], b: &[f64]) -> f64 {
     crate::measure::quantile(&apart, 0.5)
 }
 
-/// The path modes on the named cases: each against itself, told of the hand 2000 times a second, so
-/// that its delay is taken out.
+/// The path modes on the named cases: each against itself with 2000 reports of the hand a second,
+/// so that its delay is taken out.
 ///
 /// # Errors
 /// Never but by a defect.

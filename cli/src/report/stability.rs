@@ -1,13 +1,13 @@
 //! Stability of the contact model: for every contact stiffness, rate and scheme asked for, what
 //! runs in its place, in how many sub-steps, what it does to the energy of a finger that bounces
-//! without damping, and whether it forgets.
+//! without damping, and whether it is contractive.
 //!
 //! *Energy gain*: an undamped finger lands at 0.1 m/s under 0.5 N and bounces for a second; the
 //! largest energy over that at the landing, less 1. The equations have none.
 //!
 //! *Contractive*: the same stroke over the same rough ground twice, at 0.1 m/s and 0.5 N with the
 //! fingertip's damping, the second a picometre further. Where the pads end less than −80 dB of
-//! their movement apart the contact forgets how it came there; where not, it is chaotic, and levels
+//! their movement apart the contact is contractive; where not, it is chaotic, and levels
 //! can be compared and waveforms cannot.
 
 use super::refused;

@@ -10,7 +10,7 @@ use crate::measure::relative_error;
 /// Impulse that the amplitudes of the body stand for, N·s.
 const IMPULSE_N_S: f64 = 0.01;
 
-/// The six cases as a bank hears them.
+/// The six cases as a bank takes them.
 pub struct Strokes(Vec<(&'static str, Vec<f32>)>);
 
 impl Strokes {

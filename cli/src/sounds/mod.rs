@@ -343,7 +343,7 @@ pub fn stem(path: &Path) -> String {
     stem.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
 }
 
-/// The end of a name that tells a take: nothing where there is one.
+/// The end of a name that numbers a take: nothing where there is one.
 pub fn take_suffix(take: u16, takes: u16) -> String {
     if takes == 1 { String::new() } else { format!("-{take:0width$}", width = takes.to_string().len()) }
 }

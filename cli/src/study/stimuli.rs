@@ -18,7 +18,7 @@ const PEAK: f32 = 0.9;
 /// Corner of an anchor that nobody gives (ITU-R BS.1534), Hz.
 const ANCHOR_HZ: f64 = 3500.0;
 
-/// A stimulus as the page knows it; paths are relative to it.
+/// A stimulus as the page has it; paths are relative to it.
 #[derive(Debug, Serialize)]
 pub struct Shown {
     name: String,
@@ -103,7 +103,8 @@ pub fn write(
     Ok((shown, loudest.unwrap_or(0), warnings))
 }
 
-/// Files are numbered: a name would tell the answer to whoever looks at what the browser loads.
+/// Files are numbered: a name would give the answer away to anybody who looks at what the browser
+/// loads.
 fn write_one(
     number: usize,
     stimulus: &Stimulus,

@@ -30,7 +30,7 @@ pub struct AnalyzeArgs {
     /// Distortion that the document's method averages
     #[arg(long, default_value = "squared", value_parser = one_of(DISTORTIONS))]
     pub distortion: Distortion,
-    /// Share of the median distortion up to which the document's method believes a minimum, 0–1
+    /// Share of the median distortion up to which the document's method takes a minimum, 0–1
     #[arg(long, default_value_t = 0.5, value_parser = share)]
     pub threshold: f64,
     /// Write what repeats, one cell or strip, as a 16-bit PNG (black to white: its lowest to its
@@ -278,7 +278,7 @@ mod tests {
         assert!(text(&analysis).contains("stripes: repeats along (13."), "{}", text(&analysis));
         let strip = load_channel(&file, Channel::Luma).unwrap().raster;
         assert!(strip.width >= 14 && strip.range().1 > 0.99);
-        // Where nothing repeats, no file is left and the reason is told.
+        // Where nothing repeats, no file is left and the reason is reported.
         let mut state = 7_u32;
         let noise = Raster::from_fn(96, 96, |_, _| {
             state = asperity_dsp::rng::hash_u32(state);

@@ -194,7 +194,7 @@ fn may_be_in_alpha(options: &Options, [red, green]: [&Raster; 2]) -> bool {
         && channel(&options.normals, Channel::A).is_ok_and(|alpha| varies(&alpha))
 }
 
-/// Tells of a gamma that normals were stored through.
+/// Reports a gamma that normals were stored through.
 fn doubtful_normals([red, green]: [&Raster; 2], tileable: bool) -> Option<String> {
     let neutral = [red, green].map(Raster::mean);
     let [x, y] = neutral.map(|mean| 2.0 * mean - 1.0);

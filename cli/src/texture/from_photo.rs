@@ -55,7 +55,7 @@ pub struct Options {
     /// Height from the lowest to the highest point, m [default: what contrast gives]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub relief_m: Option<f64>,
-    /// Factor on the heights that contrast gives, as a report of the same camera and light told it
+    /// Factor on the heights that contrast gives, as a report of the same camera and light has it
     #[arg(long, value_name = "FACTOR", value_parser = positive, conflicts_with = "known")]
     pub calibration: Option<f64>,
     /// Photograph of a sample of known relief by the same camera, light and distance: takes the

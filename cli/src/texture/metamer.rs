@@ -132,7 +132,7 @@ struct Report {
     /// Height = `offset` + `scale` · grey, grey 0–1, in units of the reference's white over black.
     offset: f64,
     scale: f64,
-    /// Fraction of texels that the file cannot hold: none since `offset` and `scale` are told.
+    /// Fraction of texels that the file cannot hold: none since `offset` and `scale` are written.
     clipped: f64,
     #[serde(flatten)]
     size: SizeMm,
@@ -194,7 +194,7 @@ fn settings(options: &Options) -> MetamerOptions {
     }
 }
 
-/// Size of a texel of the original: told, by its width or as in the document, 40 mm over 256
+/// Size of a texel of the original: given, by its width or as in the document, 40 mm over 256
 /// texels.
 fn texel_m(options: &Options, width: usize) -> f64 {
     let by_width = options.object.width_mm.map(|width_mm| 1e-3 * width_mm / width as f64);

@@ -133,7 +133,7 @@ impl DataSet {
         format!("shard-{index:06}.{}", self.spec.says.output.format.extension())
     }
 
-    /// Makes a shard, unless it is there. `progress` is told after each stroke.
+    /// Makes a shard, unless it is there. `progress` is called after each stroke.
     ///
     /// # Errors
     /// When a stroke is refused, the disk is full, or the shard that is there is of another build.

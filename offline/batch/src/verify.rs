@@ -23,7 +23,7 @@ pub struct Verified {
 }
 
 /// Compares every shard with the manifest, and renders a share of the strokes again. `progress` is
-/// told after each shard.
+/// called after each shard.
 ///
 /// # Errors
 /// The first shard that is bad, in one line.

@@ -79,7 +79,7 @@ impl<W: Write> Shard<W> {
     }
 
     fn file(&mut self, id: &str, kind: &str, bytes: &[u8]) -> io::Result<()> {
-        // No owner, no time: the same bytes whoever writes them, and when.
+        // No owner, no time: the same bytes on any machine, at any time.
         let mut header = tar::Header::new_ustar();
         header.set_size(bytes.len() as u64);
         header.set_mode(0o644);

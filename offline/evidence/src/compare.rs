@@ -52,7 +52,7 @@ pub struct Table {
 
 impl Comparison {
     /// The table of maps (heights 0–1); `set` tells sets of maps apart that share a seed.
-    /// `progress` is told after each map.
+    /// `progress` is called after each map.
     ///
     /// # Errors
     /// The place of the map that the engine refuses, and why.
@@ -68,7 +68,7 @@ impl Comparison {
         }
     }
 
-    /// The table by one judge: what it knows of strokes, and its share of right answers.
+    /// The table by one judge: what it learnt of strokes, and its share of right answers.
     fn told_by<T>(
         &self,
         maps: &[Raster],
@@ -101,7 +101,7 @@ impl Comparison {
     }
 }
 
-/// The first map and the others made to feel like it. `progress` is told the part done.
+/// The first map and the others made to feel like it. `progress` gets the part done.
 ///
 /// # Errors
 /// The place of the map that is refused, and why.

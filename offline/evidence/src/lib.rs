@@ -3,7 +3,7 @@
 //!
 //! It is a crate because a Fourier transform or a matrix of any size is compiled anew, half a
 //! minute each, in every test program that calls the generic code behind it. So nothing here is
-//! generic: whoever calls it links it. The observer and the engine do not call each other.
+//! generic: the caller links it. The observer and the engine do not call each other.
 //!
 //! | module | measures, makes or judges |
 //! |---|---|

@@ -7,7 +7,7 @@
 //! m, v: mean and variance of a feature over the strokes of a surface; σ: the observer's own
 //! deviation, σ̄ their mean: a level that changes in all bands at once is noticed no better than
 //! one that changes in a single band (ours; of independent bands, two cuts of one surface that
-//! differ by 2 dB lay further apart than two materials). d′ is what one stroke tells somebody who
+//! differ by 2 dB lay further apart than two materials). d′ is what one stroke gives somebody who
 //! knows both surfaces: 1 is about a just noticeable difference. Both surfaces are stroked at the
 //! same places, directions, speeds and forces, so that a surface is at distance 0 from itself.
 
@@ -59,7 +59,7 @@ pub fn right_answers(a: &[Percept], b: &[Percept]) -> f64 {
     right as f64 / (a.len() + b.len()).max(1) as f64
 }
 
-/// A surface as strokes tell it: mean, variance and the observer's deviation of each feature.
+/// A surface as strokes show it: mean, variance and the observer's deviation of each feature.
 #[derive(Debug, Clone)]
 pub struct Impression {
     features: Vec<[f64; 3]>,

@@ -1,7 +1,7 @@
 //! A frozen observer: told apart by it means told apart by a machine with people's noise, and no
 //! better.
 //!
-//! A classifier without noise parts surfaces that no finger parts. This one knows a signal only
+//! A classifier without noise parts surfaces that no finger parts. This one has a signal only
 //! through what the literature says a hand and an ear know of it: nothing below threshold, levels
 //! to within a difference threshold, four looks at most, and a slip now and then. No constant of it
 //! was fitted to an answer that it is asked to give; [`constants`] names where each comes from, and

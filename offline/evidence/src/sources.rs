@@ -1,6 +1,6 @@
 //! Figures and tables of the sources, computed again and put beside what is printed.
 //!
-//! Each is one function without arguments, so that whoever runs it gets the same numbers, but for
+//! Each is one function without arguments, so that every run gives the same numbers, but for
 //! times.
 
 mod contacts;

@@ -85,7 +85,7 @@ impl FitOptions {
     }
 }
 
-/// Fits one strike of `recording`; `progress` hears the part done, 0 to 1.
+/// Fits one strike of `recording`; `progress` gets the part done, 0 to 1.
 ///
 /// ```
 /// use asperity_fit::{FitOptions, Recording, fit};

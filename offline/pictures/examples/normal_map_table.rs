@@ -5,7 +5,7 @@
 //! true heights, raw 32-bit floats one after the other, for `tests/independent/integrators.py`,
 //! which says what other integrators reach on the same input.
 //!
-//! The scale of a displacement map is not known: power is told of heights that are scaled to it.
+//! The scale of a displacement map is not known: power is stated of heights that are scaled to it.
 
 #[path = "../tests/normals/mod.rs"]
 mod normals;

@@ -300,7 +300,7 @@ mod tests {
     }
 
     /// Open question: a sensor's mosaic blurs noise over a texel or two, so that neither its corner
-    /// nor 4–8 texels tell how strong it is.
+    /// nor 4–8 texels show how strong it is.
     #[test]
     fn a_wall_loses_noise_that_a_mosaic_has_blurred() {
         let mut rng = Rng::new(7);

@@ -10,8 +10,8 @@
 //! | ground | the largest connected area as bright as L |
 //! | z | heights, texels: the solution that has no other lowest place, by fast marching |
 //!
-//! Frontal light tells how steep a place is and not which way. The literature integrates that from
-//! all summits, pits and saddles, whose kinds and heights have to be told (E. Rouy and A. Tourin,
+//! Frontal light shows how steep a place is and not which way. The literature integrates that from
+//! all summits, pits and saddles, whose kinds and heights have to be given (E. Rouy and A. Tourin,
 //! SIAM J. Numer. Anal. 29, 1992; R. Kimmel and A. M. Bruckstein, IJCV 16, 1995). Of a relief on a
 //! flat ground they need not be: the ground is one such place, and the largest. Whether the relief
 //! rises from the ground or is sunk into it light cannot say. Fast marching: J. A. Sethian, Proc.
@@ -19,7 +19,7 @@
 //!
 //! Measured against known heights, to two levels of 255 of noise: correlation 0.94–0.99 and relief
 //! within a tenth for the thesis' reliefs, 0.85–0.98 for bumps at random places, where brightness
-//! as height has −0.7–0.1. Tried and left: marching from all summits, told their places but no
+//! as height has −0.7–0.1. Tried and left: marching from all summits, given their places but no
 //! heights, has 0.73–1.00 and 0.27 for surfaces without a ground; from every flat place as a summit
 //! −0.8–0.1. An albedo that varies by 2 % hides every ground: nothing is found then, and
 //! [`above_flat_ground`] says so.

@@ -24,7 +24,7 @@
 //! Without a lattice nothing is averaged: the whole picture is the primitive, heights and R are
 //! taken from it. They are also taken from the whole picture when the pattern wanders off its
 //! lattice, as scales on a bent skin do: then the mean of all cells is a blur
-//! ([`Repetition::wanders`]). Brightness has no size: a texel is [`TEXEL_M`] wide unless told. The
+//! ([`Repetition::wanders`]). Brightness has no size: a texel is [`TEXEL_M`] wide by default. The
 //! document's users preferred heights twice as large as computed; [`PhotoOptions::exaggeration`] is
 //! 1, 2 or 4 there.
 
@@ -57,7 +57,7 @@ const STEADY: f64 = 0.7;
 pub const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
 /// Shorter side below which R is not trusted, texels: two octaves above the blur.
 pub const SMALL_PX: usize = 64;
-/// R where a picture is too small or too even to tell it. Assumed: α of 1.75.
+/// R where a picture is too small or too even to show it. Assumed: α of 1.75.
 const UNKNOWN_ROUGHNESS: f64 = 0.5;
 
 /// Repeating pattern of the picture.
@@ -169,7 +169,7 @@ pub struct PhotoSurface {
     pub shape: Shape,
     /// Which way up they are.
     pub sign: Sign,
-    /// True where the light was found in the picture (and not told).
+    /// True where the light was found in the picture (and not given).
     pub light_was_found: bool,
     /// Rms of what was taken for the camera's noise, of white.
     pub noise: f64,
@@ -179,7 +179,7 @@ pub struct PhotoSurface {
     pub tileable: bool,
 }
 
-/// Makes a surface of a photograph: grey values 0–1 as stored (sRGB). `progress` is told the
+/// Makes a surface of a photograph: grey values 0–1 as stored (sRGB). `progress` gets the
 /// fraction done.
 ///
 /// # Errors

@@ -28,7 +28,7 @@
 //! grids, again and again over all grids, and from the smooth ground under them:
 //! `metamer/terraces.rs`), then with momentum, which gives up more of the original's arrangement,
 //! and then from mixtures of the original and the reference: of bars or holes of two heights that
-//! repeat exactly hardly any other arrangement has the same sub-bands. [`Metamer::borrowed`] tells
+//! repeat exactly hardly any other arrangement has the same sub-bands. [`Metamer::borrowed`] states
 //! how much was taken, and [`MetamerOptions::borrow`] limits it. [`Method::Spectrum`] takes the
 //! amplitude spectrum of the reference instead, as the document's claims allow.
 //!
@@ -152,7 +152,7 @@ pub struct Metamer {
     pub passes: usize,
     /// Share of the reference's own arrangement in the surface that the passes began with. A
     /// surface of few heights that repeats exactly (a grid, a perforated sheet) admits hardly any
-    /// other. What is left of either arrangement in the end the correlations tell.
+    /// other. What is left of either arrangement in the end the correlations show.
     pub borrowed: f64,
     /// Mean correlation of the oriented sub-bands with the original's: 1 where its arrangement is
     /// kept, 0 where nothing of it is left.
@@ -165,7 +165,7 @@ pub struct Metamer {
     pub shift_from_reference_px: [usize; 2],
 }
 
-/// Makes `original` feel like `reference`. `progress` is told the fraction done.
+/// Makes `original` feel like `reference`. `progress` gets the fraction done.
 ///
 /// # Errors
 /// When an image holds numbers that are not finite, when one is too small for the bands (each side

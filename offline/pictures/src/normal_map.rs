@@ -93,7 +93,7 @@ pub struct NormalMapHeights {
     pub green_is_certain: bool,
     /// Operator that took its slopes.
     pub derivative: Derivative,
-    /// True where it was told or the map shows it: false when several fit alike, or none to within
+    /// True where it was given or the map shows it: false when several fit alike, or none to within
     /// rounding.
     pub derivative_is_certain: bool,
     /// True where it tiles.
@@ -224,7 +224,7 @@ fn which_green(spectrum: &mut SlopeSpectrum, wanted: Green) -> (Green, bool) {
     (green, certain)
 }
 
-/// The derivative that was told, or the one that the slopes leave, or of those they do not tell
+/// The derivative that was given, or the one that the slopes leave, or of those they do not tell
 /// apart the one that raises short waves the least.
 fn which_derivative(spectrum: &SlopeSpectrum, noise: f64, told: Option<Derivative>) -> (Derivative, bool) {
     if let Some(derivative) = told {

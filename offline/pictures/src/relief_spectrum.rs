@@ -11,7 +11,7 @@
 //! | α | Hasti's exponent of the overlay, α = 2.5 − 1.5 R |
 //!
 //! The engine's overlay begins where a map ends, at two texels, so its level is taken at the map's
-//! fine end ([`FINE_OCTAVE_PX`]) and carried to the octave at 1 mm, where it is told, by the
+//! fine end ([`FINE_OCTAVE_PX`]) and carried to the octave at 1 mm, where it is stated, by the
 //! overlay's own law: both join.
 
 use crate::borders::{Borders, SplitBorders};
@@ -47,7 +47,7 @@ pub struct ReliefSpectrum {
 }
 
 impl ReliefSpectrum {
-    /// The law of heights (texels), or `None` when they are flat or too few to tell.
+    /// The law of heights (texels), or `None` when they are flat or too few.
     #[must_use]
     pub fn of(heights_px: &Raster) -> Option<Self> {
         let points = bands(heights_px);
@@ -160,7 +160,7 @@ fn bands(heights_px: &Raster) -> Vec<[f64; 3]> {
     points.filter(|p| p[2] > f64::MIN_POSITIVE).map(|[f, w2, p]| [f, w2, p.ln()]).collect()
 }
 
-/// (ln A, α, σ²) of least squares; σ² is kept when it is told.
+/// (ln A, α, σ²) of least squares; σ² is kept when it is given.
 fn fit(points: &[[f64; 3]], blur: Option<f64>) -> [f64; 3] {
     let n = points.len() as f64;
     let told = blur.unwrap_or(0.0);

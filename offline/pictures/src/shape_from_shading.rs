@@ -83,7 +83,7 @@ pub struct Shape {
 }
 
 /// Heights by the recommended method: with the given light, or the one found in the image, or dark
-/// is deep when there is none in it or it comes from the viewer's direction. `progress` is told the
+/// is deep when there is none in it or it comes from the viewer's direction. `progress` gets the
 /// fraction done.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Writes SVG elements; knows nothing about plots.
+//! Writes SVG elements; plots are elsewhere.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

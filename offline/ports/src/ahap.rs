@@ -123,7 +123,7 @@ pub fn write(clip: &Clip, sound: Option<&str>) -> Result<Files, PortError> {
 }
 
 /// Reads a clip: continuous events times their curves, transients as strokes. Sounds and parameters
-/// that are no vibration are told.
+/// that are no vibration are reported.
 ///
 /// # Errors
 /// When it is no AHAP, or a number is no time or value.

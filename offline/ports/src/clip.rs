@@ -77,7 +77,7 @@ pub struct Clip {
 pub struct Read {
     /// The clip.
     pub clip: Clip,
-    /// Sentences for whoever asked for it.
+    /// Sentences for the user.
     pub told: Vec<String>,
 }
 

@@ -50,7 +50,7 @@ struct Envelopes {
 }
 
 /// Reads a clip. Frequency points outside the amplitude's time, which early editors wrote, are left
-/// out and told.
+/// out and reported.
 ///
 /// # Errors
 /// When it is no `.haptic` of version 1, or breaks another rule of the format.

@@ -24,6 +24,6 @@ pub(crate) fn value(text: &str) -> Result<Value, String> {
     if deepest > DEEPEST {
         return Err(error.to_string());
     }
-    // What neither takes is told in the words of the plain format.
+    // What neither takes is reported in the words of the plain format.
     json5::from_str(text).map_err(|_| error.to_string())
 }

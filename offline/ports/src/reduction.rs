@@ -98,7 +98,7 @@ const LEVEL_S: f64 = 0.012;
 /// Strokes stand out from the loudest moment by no more than this, or they are left out.
 const FAINTEST_STROKE: f64 = 0.05;
 
-/// Reduces samples at `rate_hz` to a clip for a device. `progress` hears how much is done, 0 to 1.
+/// Reduces samples at `rate_hz` to a clip for a device. `progress` gets how much is done, 0 to 1.
 ///
 /// ```
 /// use asperity_ports::device::Device;

@@ -76,7 +76,7 @@ pub struct SolvedBody {
     pub told: Vec<String>,
 }
 
-/// Makes a body of a mesh; `progress` hears the part done, 0 to 1.
+/// Makes a body of a mesh; `progress` gets the part done, 0 to 1.
 ///
 /// ```
 /// use asperity_shape::eigenmodes::Wanted;
@@ -101,7 +101,7 @@ pub fn make(mesh: Mesh, making: &Making, progress: &mut dyn FnMut(f64)) -> Resul
     make_as_fine_as(mesh, making, &Fineness::FULL, progress)
 }
 
-/// Solves as fine as is told, where the mesh is a surface; a solid is solved as it is.
+/// Solves as fine as is asked, where the mesh is a surface; a solid is solved as it is.
 ///
 /// # Errors
 /// Those of [`make`].
@@ -276,8 +276,8 @@ fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Ve
 }
 
 impl Making {
-    /// Metres to one unit of the mesh; a size that few objects have is told where nothing was said
-    /// about it.
+    /// Metres to one unit of the mesh; a size that few objects have is reported where nothing was
+    /// said about it.
     fn scale(&self, mesh: &Mesh, told: &mut Vec<String>) -> Result<f64, ShapeError> {
         let side = longest_side(mesh.points());
         if let Some(size_m) = self.size_m {

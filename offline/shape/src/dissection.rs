@@ -23,7 +23,7 @@ struct Graph {
 }
 
 impl Graph {
-    /// From the pairs of a symmetric pattern, each told once.
+    /// From the pairs of a symmetric pattern, each stated once.
     fn of(nodes: usize, pairs: &mut dyn Iterator<Item = (u32, u32)>) -> Self {
         let pairs: Vec<(u32, u32)> = pairs.filter(|(a, b)| a != b).collect();
         let mut starts = vec![0_u32; nodes + 1];
@@ -61,7 +61,7 @@ enum Side {
 }
 
 /// The nodes in the order in which they are eliminated; `pairs` are the places of the matrix, each
-/// told once.
+/// stated once.
 pub fn order(nodes: &[Vec3], pairs: &mut dyn Iterator<Item = (u32, u32)>) -> Vec<u32> {
     let graph = Graph::of(nodes.len(), pairs);
     let mut side = vec![Side::Elsewhere; nodes.len()];

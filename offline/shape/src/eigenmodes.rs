@@ -41,7 +41,7 @@ pub struct Eigenmodes {
     pub steps: f64,
 }
 
-/// Solves for the modes of a body; `progress` hears the part done, 0 to 1.
+/// Solves for the modes of a body; `progress` gets the part done, 0 to 1.
 ///
 /// # Errors
 /// When memory runs out, the work would take more than a minute, more than [`MOST_MODES`] modes are

@@ -89,7 +89,7 @@ impl<'a> Lanczos<'a> {
         self.coupling = coupling;
     }
 
-    /// The modes as the basis knows them.
+    /// The modes as the basis has them.
     ///
     /// # Errors
     /// When the small eigenvalue problem does not converge.

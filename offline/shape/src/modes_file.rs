@@ -61,7 +61,7 @@ fn rounded(x: f64) -> f64 {
 
 impl ModesFile {
     /// A body with its damping, and with `radiation` in pascals at 1 m; modes that do not swing any
-    /// more are left out and told.
+    /// more are left out and reported.
     ///
     /// # Errors
     /// When no mode is left that rings.

@@ -1,7 +1,7 @@
 //! Ringing of a solved body: its modes as they are heard when it is struck at one place.
 //!
 //! A strike of 1 N·s at p along n̂ gives mode m the velocity φ_m(p)·n̂, of which its gain is heard;
-//! material damping and, where it is told, what the air takes let it decay.
+//! material damping and, where it is given, what the air takes let it decay.
 
 use crate::body::SolvedBody;
 use asperity_dsp::damping::Damping;
@@ -24,9 +24,9 @@ pub struct Ringing {
     pub phase_rad: f64,
 }
 
-/// The modes that swing, struck at a point of the surface; `air` tells of a mode and its frequency
+/// The modes that swing, struck at a point of the surface; `air` gives of a mode and its frequency
 /// in Hz the gain and what the air adds to its decay, 1/s. Those damped so much that they do not
-/// swing any more are left out and told.
+/// swing any more are left out and reported.
 pub fn ringing(
     body: &mut SolvedBody,
     damping: &Damping,

@@ -6,7 +6,7 @@
 //! | [`Method::Smooth`] | roughness of u and v over the mesh's graph, the rim held on a circle (`smooth`) | one linear solve |
 //!
 //! Source: the thesis on graphics textures, equations 4.13–4.22 and 4.24–4.27. A surface is one
-//! piece with one rim: whoever has a tube or a closed body cuts it open first.
+//! piece with one rim: a tube or a closed body is cut open first.
 
 mod energy;
 mod smooth;

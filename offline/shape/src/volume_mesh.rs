@@ -61,8 +61,8 @@ impl VolumeMesh {
     }
 
     /// Turns what a mesher wrote into a body: points at the same place become one, left-handed
-    /// tetrahedra are turned, flat ones left out; each is told. What has two parts, overlaps itself
-    /// or is too large is refused.
+    /// tetrahedra are turned, flat ones left out; each is reported. What has two parts, overlaps
+    /// itself or is too large is refused.
     ///
     /// # Errors
     /// When no body is left, it has several parts, three tetrahedra share a face, a number is not

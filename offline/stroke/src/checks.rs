@@ -13,7 +13,7 @@ const LEAST_RATE_HZ: f64 = 200.0;
 const CLIPPED: f64 = 1e-4;
 /// Samples at the extreme in a row that are no coincidence.
 const CLIPPED_RUN: usize = 3;
-/// Force that changes by more of its mean than this lets go of the ground now and then: told,
+/// Force that changes by more of its mean than this lets go of the ground now and then: reported,
 /// refused.
 const LIFTS: (f64, f64) = (0.5, 1.0);
 /// Floor over the recording beyond which nothing of the ground is left, dB.
@@ -152,7 +152,7 @@ pub fn stays_down(lift: f64, tool: &Tool, warnings: &mut Vec<String>) -> Result<
     Ok(())
 }
 
-/// Refuses a recording that is all floor, and warns of one whose floor nobody told.
+/// Refuses a recording that is all floor, and warns of one whose floor is unknown.
 ///
 /// # Errors
 /// When the floor is as strong as the recording.

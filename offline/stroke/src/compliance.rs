@@ -20,12 +20,12 @@ pub struct Compliance {
 
 /// Length of a block, s.
 const BLOCK_S: f64 = 0.25;
-/// Greatest over least force from which it is told.
+/// Greatest over least force from which it is estimated.
 const LEAST_RANGE: f64 = 2.0;
-/// Error that is told, a share of it.
+/// Error that is stated, a share of it.
 const MOST_ERROR: f64 = 0.1;
 
-/// Compliance that strokes tell, or a remark why not.
+/// Compliance that strokes show, or a remark why not.
 pub(crate) fn find(strokes: &[Stroke], tool: &Tool, warnings: &mut Vec<String>) -> Option<Compliance> {
     let of = |stroke: &Stroke| -> Vec<[f64; 2]> {
         let block = (BLOCK_S * stroke.rate_hz) as usize;

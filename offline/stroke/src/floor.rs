@@ -1,6 +1,6 @@
 //! Noise floor of the recording.
 //!
-//! Standstill tells it bin by bin. Without one, what does not fall any more at the top of the band
+//! Standstill shows it bin by bin. Without one, what does not fall any more at the top of the band
 //! is taken for white: the largest white power that leaves the bands above 150 Hz on a
 //! straight line of a power law through the probe.
 
@@ -22,7 +22,7 @@ const STEPS: usize = 80;
 pub struct Floor {
     /// Density at each bin, unit²/Hz.
     pub density: Vec<f64>,
-    /// True where standstill told it.
+    /// True where standstill gave it.
     pub from_standstill: bool,
     /// Level of the floor over the recording's, from 20 Hz to 1 kHz, dB.
     pub over_signal_db: f64,

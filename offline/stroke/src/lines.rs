@@ -6,7 +6,7 @@
 //! once in a hundred strokes.
 //!
 //! A speed that was not measured sample by sample wanders and smears a line. The phase of the
-//! strongest one, in a band about it that narrows from ± 25 to 8 %, then tells the place: a period
+//! strongest one, in a band about it that narrows from ± 25 to 8 %, then gives the place: a period
 //! for every turn. The period is the path over the turns.
 
 use crate::profile::{Profile, at_places, felt_height, held, spectrum};
@@ -34,10 +34,10 @@ pub struct Line {
 pub struct Lines {
     /// Lines, the strongest first.
     pub lines: Vec<Line>,
-    /// Deviation of the speed from its told mean that the strongest line shows, a share; 0 where it
-    /// was measured.
+    /// Deviation of the speed from its stated mean that the strongest line shows, a share; 0 where
+    /// it was measured.
     pub wander: f64,
-    /// Smeared peak that is no line: the speed wanders, and too weak a line tells too little of it.
+    /// Smeared peak that is no line: the speed wanders, and too weak a line shows too little of it.
     pub is_smeared: bool,
 }
 
@@ -51,7 +51,7 @@ const BROKEN: f64 = 0.12;
 const SMEARED_DB: f64 = -5.0;
 /// Line over its third octave from which its phase is trusted, dB.
 const TRUSTED_DB: f64 = 0.0;
-/// Lines that are told.
+/// Lines that are reported.
 const MOST: usize = 12;
 
 /// Looks for lines in a stroke; the probe's response at its mean force is taken off.

@@ -215,7 +215,7 @@ mod tests {
                 let law = PowerLaw::through(&bands, tip_radius_m);
                 // What a tip leaves of the octaves hides their slope, and the engine's weights are
                 // polynomials of R within half a decibel: the exponent is off by up to 0.3 under
-                // the widest tip, and its standard error has to tell that.
+                // the widest tip, and its standard error has to hold that.
                 let bound = if tip_radius_m > 0.0 { (2.0 * law.alpha_se).min(0.3) } else { 0.1 };
                 assert!(
                     (law.alpha - alpha).abs() < bound,
@@ -227,7 +227,7 @@ mod tests {
         }
     }
 
-    // Long waves beyond 10 mm are flat, and a stroke of few seconds tells each third octave to a
+    // Long waves beyond 10 mm are flat, and a stroke of few seconds gives each third octave to a
     // decibel only.
     #[test]
     fn flat_long_waves_are_not_taken_for_a_slope_under_tips() {

@@ -1,4 +1,4 @@
-//! Report of a surface from strokes: what `surface.json` holds and Python is told.
+//! Report of a surface from strokes: what `surface.json` holds and Python gets.
 
 use crate::colour::Colour;
 use crate::lines::Line;
@@ -23,9 +23,9 @@ pub struct Report<'a> {
     pub lines: &'a [Line],
     /// Deviation of the speed that the lines show, a share.
     pub speed_wander: f64,
-    /// Coefficient of friction, where something told it.
+    /// Coefficient of friction, where something showed it.
     pub friction: Option<f64>,
-    /// Sinking of the ground, m/N, where a displacement under a changing force told it.
+    /// Sinking of the ground, m/N, where a displacement under a changing force showed it.
     pub compliance_m_n: Option<f64>,
     /// Its standard error, m/N.
     pub compliance_se_m_n: Option<f64>,

@@ -50,9 +50,9 @@ pub struct StrokeSurface {
     pub colour: Vec<Colour>,
     /// Gain of each doubling of force beside the contact law, dB; none where forces do not differ.
     pub force_db_per_octave: Option<f64>,
-    /// Coefficient of friction, where something told it.
+    /// Coefficient of friction, where something showed it.
     pub friction: Option<f64>,
-    /// Sinking of the ground, where a displacement under a changing force told it.
+    /// Sinking of the ground, where a displacement under a changing force showed it.
     pub compliance: Option<Compliance>,
     /// Share of the variance of recorded third-octave levels that the surface as it plays explains,
     /// with the rig's colour.
@@ -245,7 +245,7 @@ fn solve(
     checks::stays_down(lift, tool, &mut warnings)?;
     let colour_db = |hz: f64| options.colour.as_deref().map_or(0.0, |table| interpolated(table, hz));
     let several = colour::speed_range(&groups) >= LEAST_SPEEDS;
-    // Levels that wander by decibels tell no tilt of a rig.
+    // Levels that wander by decibels show no tilt of a rig.
     let with_colour = options.colour.is_none() && several && level_db < 1.0;
     if !several && options.colour.is_none() {
         warnings.push(

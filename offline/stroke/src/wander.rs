@@ -1,4 +1,4 @@
-//! Wander of a speed that nobody recorded: smeared lines, and the place that a strong one tells.
+//! Wander of an unrecorded speed: smeared lines, and the place that a strong one gives.
 
 use crate::profile::{Profile, at_places, held, spectrum};
 use crate::recording::Stroke;
@@ -86,7 +86,8 @@ pub(crate) fn follow(
         let turns = (phase[phase.len() - 1] - phase[0]) / (2.0 * PI);
         let covered_m = profile.step_m * (phase.len() - 1) as f64;
         period_m = covered_m / turns.abs().max(1e-9);
-        // Place within the told path: where the phase says, on the period that the whole path has.
+        // Place within the stated path: where the phase says, on the period that the whole path
+        // has.
         let begin = phase[0];
         let places: Vec<f64> = phase.iter().map(|phase| (phase - begin) / (2.0 * PI) * period_m).collect();
         path = path

@@ -1,4 +1,4 @@
-//! A scene file as whoever tunes it has it: every number that the registry knows, in the tables
+//! A scene file as it is tuned: every number that the registry holds, in the tables
 //! that the file has, and the text around them as it is.
 
 use crate::error::CliError;
@@ -64,7 +64,7 @@ impl Document {
     /// Writes numbers at a key of a table, or takes the key out, so that its default counts.
     ///
     /// # Errors
-    /// When there is no such table, the registry knows no such number, or it is out of its range.
+    /// When there is no such table, the registry has no such number, or it is out of its range.
     pub fn set(&mut self, path: &str, key: &str, numbers: &[f64]) -> Result<(), CliError> {
         let names: Vec<&str> = steps(path).filter(|step| step.parse::<usize>().is_err()).collect();
         let at = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };

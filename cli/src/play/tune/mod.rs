@@ -34,7 +34,7 @@ use std::time::Duration;
 const LEAD_S: f64 = 0.06;
 /// Interval at which the page is read.
 const STEP: Duration = Duration::from_millis(5);
-/// Frames of a block where nobody hears.
+/// Frames of a silent block.
 #[cfg(not(feature = "device"))]
 const BLOCK_FRAMES: usize = 256;
 
@@ -164,7 +164,7 @@ impl Tuned<'_> {
 
     /// Reports an event, at the time of the last one at the earliest: the log and a finger take
     /// turns, and neither's stamps wait for the other's. (Asked first, the scene would refuse the
-    /// later one, and tell whoever looks that it was lost.)
+    /// later one, and report that it was lost.)
     fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
         let time_s = time_s.max(self.latest_s);
         self.scene.report(time_s, event).map_err(|refused| refused.reason)?;

@@ -11,7 +11,7 @@
 //!
 //! Wavelengths, heights and phases of a ground are drawn from a seed, so that there are as many
 //! profiles of a kind as wanted. What is stated of a case is the rms over [`SEEDS`] (of integrators
-//! over those whose stroke forgets how it began); the scene that is written is that of the first.
+//! over those whose stroke loses its beginning); the scene that is written is that of the first.
 
 mod files;
 mod render;

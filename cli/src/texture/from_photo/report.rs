@@ -49,10 +49,10 @@ pub struct Report {
     /// Factor on the heights that contrast gives; may be passed again as `--calibration`.
     calibration: f64,
     method: &'static str,
-    /// Which way up: `bright-is-high`, `bright-is-deep`, `light` (shading under a told light), or
+    /// Which way up: `bright-is-high`, `bright-is-deep`, `light` (shading under a given light), or
     /// `undecided` (heights are as if bright were high).
     sign: &'static str,
-    /// 0 nothing known, 1 told; decided from 0.5.
+    /// 0 nothing known, 1 given; decided from 0.5.
     sign_confidence: f64,
     /// Unit vector to the light that was used.
     light: Option<[f64; 3]>,

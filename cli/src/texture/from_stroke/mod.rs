@@ -44,7 +44,7 @@ pub struct Options {
     /// else]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
-    /// Column of the force along the surface, N: tells friction
+    /// Column of the force along the surface, N: gives friction
     #[arg(long, value_name = "COLUMN")]
     pub tangential: Option<String>,
     /// Recording of sound: ring of the body, a hit or a modes file
@@ -53,7 +53,7 @@ pub struct Options {
     /// Response of the recording rig: CSV frequency_hz,gain_db
     #[arg(long, value_name = "FILE")]
     pub colour: Option<PathBuf>,
-    /// Relative error of each of the probe's constants, for the told errors
+    /// Relative error of each of the probe's constants, for the stated errors
     #[arg(long, value_name = "SHARE", default_value_t = surface::PROBE_ERROR)]
     pub probe_error: f64,
     /// Print one JSON object, the same as surface.json

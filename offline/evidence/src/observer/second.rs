@@ -1,5 +1,5 @@
-//! A second observer: the first one's senses, an ear for rhythm, and a hand that knows how fast and
-//! how hard it strokes.
+//! A second observer: the first one's senses, an ear for rhythm, and a hand that senses how fast
+//! and how hard it strokes.
 //!
 //! It was written, with its constants and their sources, before it was asked anything; their
 //! SHA-256 ([`constants_sha256`]) was fixed then. What differs from the first observer:

@@ -13,7 +13,7 @@
 //! | `s` | processor time of the fit |
 //! | `peak` | peak of the struck body over the recording's, dB |
 //! | `err5`, `burst` | energy of the difference in the first 5 ms over the recording's there, dB; with a burst of 40 ms |
-//! | `snr`, `told` | recording over difference from the onset on, dB; what the fit says it is |
+//! | `snr`, `told` | recording over difference from the onset on, dB; what the fit states |
 //! | `late` | partials at 0.3–0.6 s within 25 dB of the loudest that are more than 20 dB too quiet, of all |
 //! | `decay` | median error of the decays of partials within 25 dB of the loudest, %, by the slope of level and of energy to come |
 //! | `split` | strong resonances of several modes of which fewer would do + those that beat, of all ([`resonances`]) |

@@ -4,7 +4,7 @@ use asperity_dsp::mode::Mode;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
-/// Modes so near a late partial, Hz, are told with it.
+/// Modes so near a late partial, Hz, are listed with it.
 const NEAR_HZ: f64 = 8.0;
 /// The late part, s after the onset.
 const LATE_S: (f64, f64) = (0.3, 0.6);

@@ -2,7 +2,7 @@
 //! [FIRST]]`
 //!
 //! Each is 0.2 s of noise and then 2 s of modes struck at once ([`impact`]) or pushed ([`pushes`]),
-//! and is fitted as a user's file is: told nothing.
+//! and is fitted as a user's file is: without a hint.
 //!
 //! | column | what |
 //! |---|---|

@@ -51,7 +51,7 @@ impl DampingLaw {
         for &(w, d) in points {
             let predicted = self.alpha_per_s + self.beta_s * w;
             let off = (d / predicted).ln();
-            // Relative errors of the law, and a weight that forgets deviations beyond a quarter.
+            // Relative errors of the law, and a weight that drops deviations beyond a quarter.
             let weight = 1.0 / (predicted * predicted * (1.0 + (off / 0.25).powi(2)).powi(2));
             s11 += weight;
             s12 += weight * w;

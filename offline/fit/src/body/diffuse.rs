@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn decaying_white_noise_has_its_energy_and_its_decay_in_every_band() {
-        // One noise has few waves in a narrow band: the mean of twelve tells.
+        // One noise has few waves in a narrow band: the mean of twelve has less scatter.
         let noises = 12;
         let (mut ratios, mut decays) = (Vec::new(), Vec::new());
         for seed in 0..noises {

@@ -166,7 +166,7 @@ impl Fit {
         let (Solved { partials, early, lead, .. }, told) = solving.solved(partials);
         warnings.extend(told);
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
-        // The strike itself, from which times are told now.
+        // The strike itself, from which times are counted now.
         let (contact, onset, offset) = (offset, onset - lead, offset + lead);
         let sound = &samples[onset..end];
         let struck = struck(&early, samples.len() - onset);

@@ -1,4 +1,4 @@
-//! Known decays: modes whose decay the sound does not tell ring no longer than it supports.
+//! Known decays: modes whose decay the sound does not show ring no longer than it supports.
 //!
 //! With σ the standard deviation of a mode's decay δ and N the samples of the sound,
 //!

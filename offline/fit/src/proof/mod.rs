@@ -3,7 +3,7 @@
 //!
 //! | file | from → to |
 //! |---|---|
-//! | `known_decay` | modes whose decay the sound does not tell → fewer, none of which rings longer than it supports |
+//! | `known_decay` | modes whose decay the sound does not show → fewer, none of which rings longer than it supports |
 //! | `late_support` | modes → those that the recording does not have later |
 //! | `pruning` | partials → proven partials with standard deviations |
 //! | `ringing` | segment → is there anything but noise; partials → which stand out of steep noise |

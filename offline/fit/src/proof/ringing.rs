@@ -231,7 +231,7 @@ mod tests {
     use asperity_dsp::rng::Rng;
     use nalgebra::Complex;
 
-    /// Brown noise of unit steps that forgets after `1 / leak` samples, and white noise of its own.
+    /// Brown noise of unit steps that is lost after `1 / leak` samples, and white noise of its own.
     fn brown(leak: f64, count: usize, seed: u64) -> Vec<f64> {
         let (mut rng, mut sum) = (Rng::new(seed), 0.0);
         let mut next = || {

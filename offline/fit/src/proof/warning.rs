@@ -47,7 +47,7 @@ pub enum Warning {
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
-    /// Modes that ring so long that the sound does not tell their decay; they ring three times as
+    /// Modes that ring so long that the sound does not show their decay; they ring three times as
     /// long as it.
     UnknownDecay {
         /// Number.

@@ -1,4 +1,4 @@
-//! Sound: one channel of a file as it stands there, for whoever is not after a strike in it.
+//! Sound: one channel of a file as it stands there, for uses without a strike.
 //!
 //! WAV of any width, FLAC and Ogg Vorbis, as [`load`](super::load) reads them, but of any length,
 //! rate and content.

@@ -14,8 +14,9 @@ const LOWEST_HZ: f64 = 20.0;
 const BACK_NEPERS: f64 = 1.5;
 /// Nothing so far below the strongest mode's energy is looked for, dB.
 const FAINTEST_DB: f64 = -90.0;
-/// Factor of what is kept that is far more: which of them are heard is told before the last of them
-/// are found and all have converged (a tile in a room, of whose 84 or 111 modes 32 may be kept).
+/// Factor of what is kept that is far more: which of them are audible is decided before the last of
+/// them are found and all have converged (a tile in a room, of whose 84 or 111 modes 32 may be
+/// kept).
 const FAR_MORE: usize = 2;
 
 /// Bounds of an analysis, in units of samples.

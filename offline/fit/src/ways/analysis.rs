@@ -76,7 +76,7 @@ impl Analysis {
     }
 }
 
-/// Analyses `segment`; `progress` hears the part done, 0 to 1. What explains it is proven, but not
+/// Analyses `segment`; `progress` gets the part done, 0 to 1. What explains it is proven, but not
 /// converged: [`settle`].
 pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let mut work = Work {

@@ -13,7 +13,7 @@
 //!
 //! A recurrence of this order cannot follow more modes than half of it, nor what is no sum of
 //! modes: what is found here is a proposal, and `ways` asks the fit whether it is true. The modes
-//! of that fit, continued backwards, then tell the end itself: they are all of the body, so what
+//! of that fit, continued backwards, then show the end itself: they are all of the body, so what
 //! they leave before it is the push ([`release_samples`]).
 //!
 //! Measured: half-sine forces of 0.3–3 ms on bodies of 6–24 modes end within 0.2 ms of where they

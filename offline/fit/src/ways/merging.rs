@@ -1,7 +1,7 @@
 //! One resonance, one mode: partials that only together describe one decay become one.
 //!
 //! A real resonance is an exponential to 20–40 dB. Over noise far below that, every criterion that
-//! knows noise alone (noise edge, Wald, Rao) spends two or three partials on the rest: a decay of
+//! models noise alone (noise edge, Wald, Rao) spends two or three partials on the rest: a decay of
 //! 0.4 dB rms off the exponential came out as three modes within 1.4 Hz, the strongest with half
 //! its true T60. What decides here is how much of the *resonance* is lost. For partials that lie
 //! within each other's half-bandwidths,

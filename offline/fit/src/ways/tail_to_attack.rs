@@ -74,7 +74,7 @@ const OF_THE_ATTACK: f64 = 4.0;
 const STAGE_ENERGY_COST: f64 = 1e-3;
 const ENERGY_COST: f64 = 1e-4;
 
-/// Analyses `segment`, which begins at the onset; `progress` hears the part done, 0 to 1.
+/// Analyses `segment`, which begins at the onset; `progress` gets the part done, 0 to 1.
 pub fn analyse_from_the_tail(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let (mut tail, mut attack): (Vec<Partial>, Vec<Partial>) = (Vec::new(), Vec::new());
     let mut capped = false;

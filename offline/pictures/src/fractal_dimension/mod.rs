@@ -81,7 +81,7 @@ pub struct FractalDimension {
     pub recommended: f64,
 }
 
-/// Everything this file knows about a picture.
+/// Everything this file computes of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DimensionReport {
     /// The estimates.

@@ -25,7 +25,7 @@ const MOST_UNEXPLAINED: f64 = 0.7;
 /// Why heights were not found as the light seemed to allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fallback {
-    /// The told light comes from the viewer's direction, and there is no flat ground; its slant,
+    /// The given light comes from the viewer's direction, and there is no flat ground; its slant,
     /// radians.
     FrontalLight(f64),
     /// A light was found, but the relief it gives is this large over the shorter side.

@@ -23,7 +23,7 @@ pub struct PhotoOptions {
     /// Height from the lowest to the highest point, m; `None`: what contrast and texel size give.
     pub relief_m: Option<f64>,
     /// Factor on the heights that contrast gives, for this camera and light
-    /// ([`super::calibration`]); does not matter to a relief that is told.
+    /// ([`super::calibration`]); does not matter to a relief that is given.
     pub calibration: f64,
     /// Factor on the heights, whatever gave them.
     pub exaggeration: f64,
@@ -61,7 +61,7 @@ pub(super) struct Scale {
 const NOTHING_PX: f64 = 1e-9;
 
 impl PhotoOptions {
-    /// The scale of these heights: told, or as contrast gives it.
+    /// The scale of these heights: given, or as contrast gives it.
     pub(super) fn scale(&self, heights_px: &Raster) -> Scale {
         let (low, high) = heights_px.range();
         let range_px = high - low;

@@ -1,9 +1,9 @@
 //! Sign of the relief: whether bright is high, and how sure a picture makes of it.
 //!
-//! Brightness alone does not tell hills from hollows. Occlusion and cast shadows give a few places
-//! much less light than the rest, but nothing gives a few places much more of it, so a tail towards
-//! dark speaks for dark is deep; a tail towards bright is paint, wear or gloss and speaks for
-//! nothing:
+//! Brightness alone does not separate hills from hollows. Occlusion and cast shadows give a few
+//! places much less light than the rest, but nothing gives a few places much more of it, so a tail
+//! towards dark speaks for dark is deep; a tail towards bright is paint, wear or gloss and speaks
+//! for nothing:
 //! ```text
 //! confidence = ¼ − ¼ · skewness, 0.1 … 0.95        decided from 0.5, that is from a skewness of −1
 //! ```
@@ -13,8 +13,8 @@
 //! public map sets (colour against displacement, light taken out by their makers): a skewness of −1
 //! alone decided 4, with correlations of 0.35, 0.06, −0.47 and −0.59; with the fine waves none is
 //! decided, and dark is high (below −0.1) in 13 of them. Neither a weaker tail, nor curvature, nor
-//! colour tells which. Without such a tail the sign is a guess, and called one. A light that was
-//! told decides; one that was found is taken to come from above, a guess as well.
+//! colour shows which. Without such a tail the sign is a guess, and called one. A light that was
+//! given decides; one that was found is taken to come from above, a guess as well.
 
 use crate::light::{band, skewness};
 use asperity_surface::raster::Raster;
@@ -36,7 +36,7 @@ pub const FOUND_LIGHT: f64 = 0.4;
 pub struct Sign {
     /// Heights were turned over: bright is deep.
     pub bright_is_deep: bool,
-    /// 0 (nothing known) – 1 (told); decided from [`DECIDED`].
+    /// 0 (nothing known) – 1 (given); decided from [`DECIDED`].
     pub confidence: f64,
 }
 

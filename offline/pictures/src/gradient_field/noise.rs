@@ -25,7 +25,7 @@ const NOT_ROUNDING: f64 = 2.0;
 const SURE: f64 = 3.0;
 /// Frequency of waves of three texels, radians per texel.
 const SHORT: f64 = std::f64::consts::TAU / 3.0;
-/// Fewest frequencies that tell a ring's noise. Source: ours, their mean is within 12 % of it.
+/// Fewest frequencies that show a ring's noise. Source: ours, their mean is within 12 % of it.
 const ENOUGH: f64 = 64.0;
 
 /// The noise of one slope, power of a frequency, by [`Bands`].

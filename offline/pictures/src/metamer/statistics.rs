@@ -74,7 +74,7 @@ impl Statistics {
     }
 
     /// Makes `original` feel like the reference. `stored` is given the heights and returns what is
-    /// left of them in a file: that is measured and returned. `progress` is told the fraction done.
+    /// left of them in a file: that is measured and returned. `progress` gets the fraction done.
     ///
     /// # Errors
     /// When the original holds numbers that are not finite.

@@ -1,6 +1,6 @@
 //! Slopes from the numbers of a normal map.
 //!
-//! Gentle slopes: red and green tell n_z better than blue does, whose steps are too coarse near 1.
+//! Gentle slopes: red and green give n_z better than blue does, whose steps are too coarse near 1.
 //! Steep ones: blue. A normal that is no unit vector was averaged with others, as resizing does:
 //! its blue is the average's, and −n_x / n_z nearer to the average slope than what red and green
 //! alone would say; the same where somebody scaled it. Blue says nothing in maps of two channels,

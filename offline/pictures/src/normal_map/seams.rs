@@ -40,7 +40,7 @@ const ENDS: f64 = 1.3;
 const STEP: f64 = 12.0;
 const SEEN_JUMP: f64 = 0.3;
 /// Step of normals across a seam over the largest inside from which a map does not tile, and fewest
-/// steps that tell it. Source: ours; of 27 public sets in eight variants each those that tile stay
+/// steps that show it. Source: ours; of 27 public sets in eight variants each those that tile stay
 /// below 1.46, of 150 made ones in five below 1.64; half of the cuts are above 1.8.
 const OUTSTANDING: f64 = 1.8;
 const ENOUGH_STEPS: usize = 32;
@@ -52,7 +52,7 @@ const SCALES: [usize; 5] = [1, 2, 4, 8, 16];
 const BLOCK: usize = 8;
 /// Means along the smaller side whose heights are asked.
 const MEANS: usize = 128;
-/// Share of the slopes' power that no surface has from which heights tell nothing.
+/// Share of the slopes' power that no surface has from which heights show nothing.
 const NO_SURFACE: f64 = 0.5;
 /// Longest wave along a seam whose jump is asked: this many fit into it.
 const FIRST_WAVE: usize = 3;
@@ -338,7 +338,7 @@ mod tests {
             let cut = box_on_ground(width, 34.0);
             assert!(stands_out(&cut) && !tiles(&cut), "{width}");
         }
-        // Too few steps tell nothing.
+        // Too few steps show nothing.
         assert!(!stands_out(&box_on_ground(24, 28.0)));
     }
 

@@ -53,7 +53,7 @@ pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
 pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCell {
     let longest = length(lattice.t1_px).max(length(lattice.t2_px)).ceil() as usize;
     let side = (longest.div_ceil(SIDE_MULTIPLE).max(2) * SIDE_MULTIPLE).min(LARGEST_SIDE);
-    // Four kinds of cells by the parity of m and n: their agreement tells pattern from noise,
+    // Four kinds of cells by the parity of m and n: their agreement separates pattern from noise,
     // whichever way it differs.
     let mut kinds = [(); 4].map(|()| (vec![0.0; side * side], vec![0_usize; side * side]));
     for (m, n) in cells(lattice, even.width, even.height) {

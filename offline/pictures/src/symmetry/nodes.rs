@@ -16,7 +16,7 @@ pub(super) const COARSER: [(f64, f64, f64); 7] = [
     (3.0, 1.0, 2.0),
 ];
 
-/// Largest index of a coarser lattice that is told from a finer one at which only some of the
+/// Largest index of a coarser lattice that is separated from a finer one at which only some of the
 /// pattern's lines fit: frames whose gap is a quarter or a fifth of their period fit themselves
 /// there in part.
 const DEEPEST_INDEX: usize = 9;
@@ -128,7 +128,7 @@ impl Nodes {
 }
 
 /// By how many standard errors the nodes that are outside fit worse than the others, beside what
-/// the distance does; 0 when the difference is too small to matter, or they are too few to tell.
+/// the distance does; 0 when the difference is too small to matter, or they are too few.
 fn missing(nodes: impl Iterator<Item = (Node, bool)>) -> f64 {
     // Weighted least squares of depth = p + q·distance² + r·outside.
     let (mut squares, mut products, mut energy, mut weights) = ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0);

@@ -29,7 +29,7 @@
 //! Measured (`analysis_table lattice`, five kinds, 24 patterns each, 256²): all right under noise
 //! to σ = 2, gradient and warp of 1 texel, 0.992 under warp of 2 texels (0.988 of 240 other
 //! patterns). All of 1064 squares in frames (`analysis_table framed`), of which 38 in 864 were once
-//! told a quarter or a fifth of their lattice.
+//! given a quarter or a fifth of their lattice.
 
 use super::detrend::{decimated, detrended};
 use super::every_direction::has_waves_of_every_direction;
