@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stats = scene.stats();
     let (_, pace) = sink.stop().ok_or("the null sink died")?;
     let bare = bare.join().map_err(|_| "the bare loop died")?;
-    let told = |name: &str, pace: &Pace| {
+    let message = |name: &str, pace: &Pace| {
         println!(
             "{name}: {} blocks, {} late, mean load {:.1} %, longest {:.0} us of {:.0}",
             pace.blocks,
@@ -75,8 +75,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             1e6 * period.as_secs_f64()
         );
     };
-    told("bare loop", &bare);
-    told("ten fingers", &pace);
+    message("bare loop", &bare);
+    message("ten fingers", &pace);
     println!(
         "{} contacts, {} events, {} lapsed, {} dropped",
         stats.contacts, stats.events, stats.lapsed, stats.dropped

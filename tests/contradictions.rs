@@ -93,7 +93,7 @@ fn stroke(kind: &str, rng: &mut Rng) -> Stroke {
     Stroke { size_m, reports: (0..steps).map(report).collect() }
 }
 
-fn told(stroke: &Stroke, wraps: bool) -> Vec<Contradiction> {
+fn message(stroke: &Stroke, wraps: bool) -> Vec<Contradiction> {
     contradictions(&reported(stroke, wraps, |_, _| ()))
 }
 
@@ -120,8 +120,8 @@ fn reported(stroke: &Stroke, wraps: bool, mut also: impl FnMut(&mut Scene, f64))
 
 /// Slips that no single report shows: times that stand, forces and blows.
 fn habits(scene: &Scene) -> Vec<SilenceReason> {
-    let mut told = scene.why_silent();
-    told.retain(|reason| {
+    let mut message = scene.why_silent();
+    message.retain(|reason| {
         matches!(
             reason,
             SilenceReason::TimeStands { .. }
@@ -130,12 +130,15 @@ fn habits(scene: &Scene) -> Vec<SilenceReason> {
                 | SilenceReason::NeverPressed
         )
     });
-    told
+    message
 }
 
 fn contradictions(scene: &Scene) -> Vec<Contradiction> {
-    let told = scene.why_silent().into_iter();
-    told.filter_map(|reason| if let SilenceReason::Contradicts(told) = reason { Some(told) } else { None })
+    let message = scene.why_silent().into_iter();
+    message
+        .filter_map(
+            |reason| if let SilenceReason::Contradicts(message) = reason { Some(message) } else { None },
+        )
         .collect()
 }
 
@@ -155,23 +158,23 @@ fn scaled_velocity(stroke: &mut Stroke, scale: f64) {
     each(stroke, |report, _| report.velocity_m_s = report.velocity_m_s.map(|v| v * scale));
 }
 
-fn is(told: &Contradiction, meant: Likely) -> bool {
-    matches!(told, Contradiction::Speed { likely, .. } if *likely == meant)
+fn is(message: &Contradiction, meant: Likely) -> bool {
+    matches!(message, Contradiction::Speed { likely, .. } if *likely == meant)
 }
 
 const PLANE: f64 = 6.0;
 
 fn slips() -> [Slip; 14] {
     [
-        ("uv in metres", |s| scaled_uv(s, 1.0), |told, _| is(told, Likely::UvInMetres)),
-        ("uv in centimetres", |s| scaled_uv(s, 100.0), |told, _| is(told, Likely::UvInCentimetres)),
-        ("uv in millimetres", |s| scaled_uv(s, 1000.0), |told, _| is(told, Likely::UvInMillimetres)),
+        ("uv in metres", |s| scaled_uv(s, 1.0), |message, _| is(message, Likely::UvInMetres)),
+        ("uv in centimetres", |s| scaled_uv(s, 100.0), |message, _| is(message, Likely::UvInCentimetres)),
+        ("uv in millimetres", |s| scaled_uv(s, 1000.0), |message, _| is(message, Likely::UvInMillimetres)),
         (
             "uv in texels",
             |s| each(s, |report, _| report.uv = [report.uv[0] * 1024.0, report.uv[1] * 768.0]),
-            |told, s| {
+            |message, s| {
                 // 1024 texels over a metre and millimetres are the same motion.
-                is(told, Likely::UvInTexels)
+                is(message, Likely::UvInTexels)
                     || s.size_m.iter().zip([1024.0, 768.0]).all(|(m, n)| (m * 1e3 / n).ln().abs() < 0.15)
             },
         ),
@@ -182,37 +185,37 @@ fn slips() -> [Slip; 14] {
                     report.velocity_m_s = [0, 1].map(|c| report.velocity_m_s[c] / size_m[c])
                 })
             },
-            |told, _| is(told, Likely::UvInMetres),
+            |message, _| is(message, Likely::UvInMetres),
         ),
         (
             "velocity in mm/s",
             |s| scaled_velocity(s, 1000.0),
-            |told, _| is(told, Likely::VelocityInMillimetres),
+            |message, _| is(message, Likely::VelocityInMillimetres),
         ),
         (
             "velocity in cm/s",
             |s| scaled_velocity(s, 100.0),
-            |told, _| is(told, Likely::VelocityInCentimetres),
+            |message, _| is(message, Likely::VelocityInCentimetres),
         ),
         (
             "velocity backwards",
             |s| scaled_velocity(s, -1.0),
-            |told, _| matches!(told, Contradiction::Turned { axes: [true, true], .. }),
+            |message, _| matches!(message, Contradiction::Turned { axes: [true, true], .. }),
         ),
         (
             "v upwards",
             |s| each(s, |report, _| report.velocity_m_s[1] = -report.velocity_m_s[1]),
-            |told, _| matches!(told, Contradiction::Turned { axes: [false, true], .. }),
+            |message, _| matches!(message, Contradiction::Turned { axes: [false, true], .. }),
         ),
         (
             "u and v swapped",
             |s| each(s, |report, _| report.velocity_m_s.swap(0, 1)),
-            |told, _| matches!(told, Contradiction::Swapped { .. }),
+            |message, _| matches!(message, Contradiction::Swapped { .. }),
         ),
         (
             "begin at every step",
             |s| each(s, |report, _| report.begins = true),
-            |told, _| matches!(told, Contradiction::BeginsAgain { .. }),
+            |message, _| matches!(message, Contradiction::BeginsAgain { .. }),
         ),
         (
             "two fingers under one number",
@@ -221,7 +224,9 @@ fn slips() -> [Slip; 14] {
                     |report: &Report| Report { uv: [report.uv[0] + 0.04 / 0.06, report.uv[1]], ..*report };
                 s.reports = s.reports.iter().flat_map(|report| [*report, second(report)]).collect();
             },
-            |told, _| matches!(told, Contradiction::TwoPlaces { .. } | Contradiction::BeginsAgain { .. }),
+            |message, _| {
+                matches!(message, Contradiction::TwoPlaces { .. } | Contradiction::BeginsAgain { .. })
+            },
         ),
         (
             "a plane of another size",
@@ -230,7 +235,7 @@ fn slips() -> [Slip; 14] {
                     report.uv = [0, 1].map(|c| report.uv[c] * size_m[c] / (PLANE * size_m[c].sqrt()))
                 })
             },
-            |told, s| match told {
+            |message, s| match message {
                 Contradiction::Speed { likely: Likely::AnotherSize(plane_m), .. } => [0, 1].iter().all(|c| {
                     plane_m[*c].is_none_or(|m| (m / (PLANE * s.size_m[*c].sqrt())).ln().abs() < 0.1)
                 }),
@@ -240,7 +245,7 @@ fn slips() -> [Slip; 14] {
         (
             "times in milliseconds",
             |s| each(s, |report, _| report.t *= 1000.0),
-            |told, _| is(told, Likely::TimesInMilliseconds),
+            |message, _| is(message, Likely::TimesInMilliseconds),
         ),
     ]
 }
@@ -256,12 +261,12 @@ fn a_contradicting_log_is_reported_with_the_likely_unit() {
                 let mut stroke = stroke(kind, &mut rng);
                 let whole = stroke.clone();
                 spoil(&mut stroke);
-                let told = told(&stroke, true);
+                let message = message(&stroke, true);
                 tried += 1;
-                if told.len() == 1 && is_right(&told[0], &whole) {
+                if message.len() == 1 && is_right(&message[0], &whole) {
                     right += 1;
                 } else {
-                    missed.push(format!("{slip}, {kind}: {told:?} of {:?}", whole.size_m));
+                    missed.push(format!("{slip}, {kind}: {message:?} of {:?}", whole.size_m));
                 }
             }
         }
@@ -349,10 +354,10 @@ fn a_right_log_is_not_called_a_contradiction() {
                 scene.report(t, ContactEvent::Impact(Impact::on(body))).unwrap();
             }
         });
-        let told = contradictions(&scene);
+        let message = contradictions(&scene);
         let habits = habits(&scene);
-        if !told.is_empty() || !habits.is_empty() {
-            alarms.push(format!("{number}, {kind}: {told:?} {habits:?} of {:?}", stroke.size_m));
+        if !message.is_empty() || !habits.is_empty() {
+            alarms.push(format!("{number}, {kind}: {message:?} {habits:?} of {:?}", stroke.size_m));
         }
     }
     assert!(alarms.is_empty(), "{} false alarms\n{}", alarms.len(), alarms.join("\n"));
@@ -437,8 +442,8 @@ fn taps_of_one_number_and_a_finger_that_rests_are_right() {
 fn both_speeds_and_the_unit_stand_in_the_sentence() {
     let mut stroke = stroke("arc", &mut Rng::new(3));
     scaled_velocity(&mut stroke, 1000.0);
-    let [told] = told(&stroke, true)[..] else { panic!("nothing was told") };
-    let text = told.to_string();
+    let [message] = message(&stroke, true)[..] else { panic!("nothing was told") };
+    let text = message.to_string();
     assert!(text.starts_with("uv moves at 0.") && text.contains("velocity_m_s says "), "{text}");
     assert!(text.contains("is velocity_m_s in mm/s?"), "{text}");
 }
@@ -481,11 +486,11 @@ fn measured_trajectories_are_right_and_in_millimetres_they_are_not() {
     }));
     for stroke in [tosses, pen] {
         assert!(stroke.reports.len() > 500, "{}", stroke.reports.len());
-        assert_eq!(told(&stroke, false), []);
+        assert_eq!(message(&stroke, false), []);
         let mut spoilt = stroke.clone();
         scaled_uv(&mut spoilt, 1000.0);
-        let told = told(&spoilt, false);
-        assert!(told.len() == 1 && is(&told[0], Likely::UvInMillimetres), "{told:?}");
+        let message = message(&spoilt, false);
+        assert!(message.len() == 1 && is(&message[0], Likely::UvInMillimetres), "{message:?}");
     }
 }
 
@@ -517,15 +522,18 @@ fn a_point_hopping_among_corners_without_velocity_is_reported() {
     for side_m in [0.05, 0.1, 0.3, 1.0] {
         for every in [1, 2, 3, 5, 10] {
             for seed in 0..8 {
-                let told = hopping(side_m, every, false, seed);
-                let right = |told: &Contradiction| {
-                    matches!(told, Contradiction::Hops { .. } | Contradiction::TwoPlaces { .. })
+                let message = hopping(side_m, every, false, seed);
+                let right = |message: &Contradiction| {
+                    matches!(message, Contradiction::Hops { .. } | Contradiction::TwoPlaces { .. })
                 };
-                if !(told.len() == 1 && right(&told[0])) {
-                    missed.push(format!("{side_m} m, every {every}, seed {seed}: {told:?}"));
+                if !(message.len() == 1 && right(&message[0])) {
+                    missed.push(format!("{side_m} m, every {every}, seed {seed}: {message:?}"));
                 }
                 let steady = hopping(side_m, every, true, seed);
-                assert!(!steady.iter().any(|told| matches!(told, Contradiction::Hops { .. })), "{steady:?}");
+                assert!(
+                    !steady.iter().any(|message| matches!(message, Contradiction::Hops { .. })),
+                    "{steady:?}"
+                );
             }
         }
     }

@@ -140,7 +140,7 @@ fn a_hard_working_limiter_is_reported_with_the_keys_that_help() {
         let lines = vec![strike(0.0, "b"), LogLine { t: 0.3, event: LogEvent::End { contact: 9 } }];
         rendered(&toml, &Memory::new(), &ContactLog { lines })
     };
-    let told = |render: &Render| {
+    let message = |render: &Render| {
         render.why_silent.iter().find_map(|reason| match reason {
             SilenceReason::TurnedDown { by_db } => Some((*by_db, reason.to_string())),
             _ => None,
@@ -152,7 +152,7 @@ fn a_hard_working_limiter_is_reported_with_the_keys_that_help() {
         let gain = full * 10f64.powf(over_db / 20.0);
         let loud = struck(&format!("gain = {gain}\nlimit = true"), "");
         assert!(peak(&loud.audio[0]) <= 1.0);
-        let (by_db, words) = told(&loud).expect("a limiter that works so hard is told");
+        let (by_db, words) = message(&loud).expect("a limiter that works so hard is told");
         println!("{over_db} dB over full scale: {words}");
         assert!((by_db as f64 - over_db).abs() <= 2.0, "{by_db} of {over_db} dB");
         for key in ["gain of its bus", "strike_gain", "full_scale"] {
@@ -161,13 +161,13 @@ fn a_hard_working_limiter_is_reported_with_the_keys_that_help() {
         // What the words name mends it.
         let mended =
             struck(&format!("gain = {gain}\nlimit = true"), &format!("strike_gain = {}", full / gain));
-        assert!(told(&mended).is_none() && mended.limiter_db < 1.0, "{} dB", mended.limiter_db);
+        assert!(message(&mended).is_none() && mended.limiter_db < 1.0, "{} dB", mended.limiter_db);
     }
     // A limiter that only rounds peaks off is not a reason to be told.
     let near = struck(&format!("gain = {}\nlimit = true", 2.0 * full), "");
-    assert!(told(&near).is_none() && near.limiter_db > 3.0, "{} dB", near.limiter_db);
+    assert!(message(&near).is_none() && near.limiter_db > 3.0, "{} dB", near.limiter_db);
     // Nor one that is not there.
-    assert!(told(&struck(&format!("gain = {}\nlimit = false", 100.0 * full), "")).is_none());
+    assert!(message(&struck(&format!("gain = {}\nlimit = false", 100.0 * full), "")).is_none());
 }
 
 #[test]

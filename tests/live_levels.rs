@@ -283,8 +283,8 @@ fn what_the_game_sets_counts() {
     };
     let (whole, found) = heard(1.0, None);
     assert!((db(heard(0.5, None).0 / whole) + 6.02).abs() < 0.01);
-    let (third, told) = heard(1.0, Some(found / 3.0));
-    assert!(told == found / 3.0 && (db(third / whole) + 9.54).abs() < 0.3, "{third} {whole}");
+    let (third, message) = heard(1.0, Some(found / 3.0));
+    assert!(message == found / 3.0 && (db(third / whole) + 9.54).abs() < 0.3, "{third} {whole}");
 }
 
 #[test]
@@ -374,11 +374,11 @@ fn strokes_that_clip_are_named_with_their_surface() {
     played.stroke(Touching::on(bricks).probe(rigid).held_by(crate_), 63.0, 1.0);
     let because = played.scene.why_clipped();
     println!("{}", because[0]);
-    let told = because[0].to_string();
+    let message = because[0].to_string();
     assert!(matches!(because[0], ClipReason::Strokes { surface, .. } if surface == bricks), "{because:?}");
     assert!(
-        ["relief_m", "Body::gain", "AudioBus::gain", "63.00 N"].iter().all(|word| told.contains(word)),
-        "{told}"
+        ["relief_m", "Body::gain", "AudioBus::gain", "63.00 N"].iter().all(|word| message.contains(word)),
+        "{message}"
     );
     // Levels that are found hold the same crate.
     let mut found = Played::new(live(LevelPolicy::Shared));

@@ -255,7 +255,7 @@ fn what_is_not_written_is_as_the_list_says() {
 
 #[test]
 fn contradicting_friction_is_refused_by_name() {
-    for (lines, told) in [
+    for (lines, message) in [
         ("mu_static = 0.5", "mu_static: stands without friction"),
         ("excitation = [\"force\"]\nslip_speed_m_s = 0.1", "slip_speed_m_s: stands without friction"),
         ("excitation = [\"friction\"]\nmu_static = 0.2\nmu_kinetic = 0.4", "must be at most mu_static, 0.2"),
@@ -263,7 +263,7 @@ fn contradicting_friction_is_refused_by_name() {
     ] {
         let text = format!("{SURFACE}width_m = 1.0\nheight_m = 1.0\n{lines}\n");
         let error = SceneFile::parse(&text, Path::new("scene.toml")).unwrap_err().to_string();
-        assert!(error.contains(told), "{error}");
+        assert!(error.contains(message), "{error}");
     }
     // Less than what slides by default: what is not written follows it.
     let text =

@@ -91,17 +91,17 @@ fn sand_of_a_live_scene_brings_its_worker() {
 
 #[test]
 fn an_integrator_replaced_and_sub_steps_are_reported() {
-    let told = |integrator, contact_stiffness_n_m| {
+    let message = |integrator, contact_stiffness_n_m| {
         let probe = Probe { contact_stiffness_n_m, ..Probe::default() };
         Config { integrator, probe, ..Config::default() }.build().unwrap().remarks
     };
-    let [remark] = &told(Integrator::SemiImplicitEuler, 1e6)[..] else { panic!("no remark") };
+    let [remark] = &message(Integrator::SemiImplicitEuler, 1e6)[..] else { panic!("no remark") };
     assert!(remark.contains("energy-conserving instead of semi-implicit-euler"), "{remark}");
     assert!(remark.contains("contact_stiffness_n_m"), "{remark}");
-    let [remark] = &told(Integrator::SemiImplicitEuler, 2e5)[..] else { panic!("no remark") };
+    let [remark] = &message(Integrator::SemiImplicitEuler, 2e5)[..] else { panic!("no remark") };
     assert!(remark.contains("2 sub-steps"), "{remark}");
-    assert!(told(Integrator::SemiImplicitEuler, 5e4).is_empty());
-    let [remark] = &told(Integrator::ExactEvent, 1e7)[..] else { panic!("no remark") };
+    assert!(message(Integrator::SemiImplicitEuler, 5e4).is_empty());
+    let [remark] = &message(Integrator::ExactEvent, 1e7)[..] else { panic!("no remark") };
     assert!(remark.contains("energy-conserving instead of exact-event"), "{remark}");
     for preset in asperity::Preset::ALL {
         assert!(Config::default().preset(preset).build().unwrap().remarks.is_empty(), "{preset:?}");

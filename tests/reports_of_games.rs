@@ -250,11 +250,14 @@ fn a_leaping_stick_warns_with_its_remedy_and_a_finger_does_not() {
         let config = Config { probe, ..si_config() };
         let ribs = common::grating(2e-3, 0.5e-3);
         let take = common::render(config, ribs, &stroke(SIDE_M, 0.2, force_n, 1.0), &Options::default());
-        (take.stats.blows, take.why_silent.iter().any(|told| matches!(told, SilenceReason::Leapt { .. })))
+        (
+            take.stats.blows,
+            take.why_silent.iter().any(|message| matches!(message, SilenceReason::Leapt { .. })),
+        )
     };
-    let (blows, told) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
+    let (blows, message) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
     println!("{blows} blows");
-    assert!(blows > 5 && told, "{blows} blows, told: {told}");
+    assert!(blows > 5 && message, "{blows} blows, told: {message}");
     assert_eq!(over_ribs(Probe::default(), FORCE_N), (0, false));
 }
 
@@ -278,7 +281,7 @@ impl Tap for MeanForce {
 
 #[test]
 fn a_probe_off_a_roofs_crest_presses_as_computed_or_is_reported() {
-    let (mut told, mut tried) = (0, 0);
+    let (mut message, mut tried) = (0, 0);
     for (name, probe) in asperity::PROBE_PRESETS {
         for (roof_m, slope) in [(0.5, 0.5), (1.0, 0.5), (0.5, 0.2), (0.25, 0.1)] {
             for (speed_m_s, force_n) in [(0.3, 0.5), (1.0, 0.5), (1.0, 2.0)] {
@@ -301,17 +304,18 @@ fn a_probe_off_a_roofs_crest_presses_as_computed_or_is_reported() {
                 let config = Config { probe, ..si_config() };
                 let take = render_tapped(config, roofs, &log, &Options::default(), &mut mean);
                 let off = mean.contact_n / mean.pressed_n - 1.0;
-                let leapt = take.why_silent.iter().any(|told| matches!(told, SilenceReason::Leapt { .. }));
+                let leapt =
+                    take.why_silent.iter().any(|message| matches!(message, SilenceReason::Leapt { .. }));
                 let what = format!("{name}, roofs of {roof_m} m, {slope} m/m, {speed_m_s} m/s, {force_n} N");
                 println!("{what}: {:+.2} %, {} blows, told {leapt}", 100.0 * off, take.stats.blows);
                 assert!(off.abs() <= 0.01 || leapt, "{what}: {:+.2} % and no word", 100.0 * off);
                 let slow = name == "fingertip" && speed_m_s < 0.5;
                 assert!(!(slow && leapt), "{what}: a slow finger stays on the ground");
-                (told, tried) = (told + usize::from(leapt), tried + 1);
+                (message, tried) = (message + usize::from(leapt), tried + 1);
             }
         }
     }
-    println!("{told} of {tried} told");
+    println!("{message} of {tried} told");
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn what_rolls_is_darker_than_what_slides_and_its_envelope_another() {
             for probe in ["rigid", "stylus"] {
                 for cell in [(0.2, 0.5), (0.6, 2.0)] {
                     let [slides, rolls] = [None, Some((0.0, 0.01))]
-                        .map(|told| heard(make(), material, probe, cell, 512, |_| told));
+                        .map(|message| heard(make(), material, probe, cell, 512, |_| message));
                     let rate_hz = slides.sample_rate_hz;
                     let of = |render: &Render| {
                         let (level, centroid_hz) =
@@ -121,9 +121,9 @@ fn what_rolls_is_darker_than_what_slides_and_its_envelope_another() {
 fn a_continuing_contact_reports_its_whole_speed_in_any_blocks() {
     let plain = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| None);
     // A hair more than the path, which is a number's rounding; what slips faster spins.
-    let told = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| Some((0.2019, 0.01)));
-    assert_eq!(plain.audio, told.audio);
-    assert_eq!(plain.haptic, told.haptic);
+    let message = heard(plate(0.5), Material::WOOD, "rigid", (0.2, 1.0), 512, |_| Some((0.2019, 0.01)));
+    assert_eq!(plain.audio, message.audio);
+    assert_eq!(plain.haptic, message.haptic);
     // It rolls off, locks, and rolls again.
     let changes = |t: f64| Some((if (0.3..0.6).contains(&t) { 0.2 } else { 0.0 }, 0.02));
     let [long, short] =

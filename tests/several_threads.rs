@@ -83,8 +83,8 @@ fn a_renderer_that_is_dropped_while_everything_rings_ends_its_threads() {
 #[test]
 fn no_more_threads_than_sixty_four_are_taken_and_at_least_one() {
     for threads in [0, 65] {
-        let told = Config { threads, ..Config::default() }.build().unwrap_err().to_string();
-        assert!(told.contains("threads") && told.contains("1–64 threads"), "{told}");
+        let message = Config { threads, ..Config::default() }.build().unwrap_err().to_string();
+        assert!(message.contains("threads") && message.contains("1–64 threads"), "{message}");
     }
 }
 

@@ -110,10 +110,10 @@ fn audio_that_comes_back_after_a_gap_does_not_bang() {
                 if after > 3.0 {
                     bangs.push(format!("{what}: {after:+.1} dB"));
                 }
-                let told = strikes.game.scene.why_silent().iter().any(
+                let message = strikes.game.scene.why_silent().iter().any(
                     |because| matches!(because, SilenceReason::Stale { count } if *count == stats.stale),
                 );
-                assert_eq!(told, strikes_a_second > 0, "{what}: {:?}", strikes.game.scene.why_silent());
+                assert_eq!(message, strikes_a_second > 0, "{what}: {:?}", strikes.game.scene.why_silent());
                 assert!(strikes_a_second == 0 || stats.stale > 0, "{what}");
             }
         }
@@ -165,7 +165,7 @@ impl Run {
         let back_s = stops_s + gap_s;
         let mut strikes = Strikes::new(self.strikes_a_second, false);
         let mut heard: Vec<(f64, f32)> = Vec::new();
-        let (mut rendered_s, mut told) = (0.0, 0u32);
+        let (mut rendered_s, mut message) = (0.0, 0u32);
         let told_at = |tick: u32, jitter_s: f64| {
             let at_s = f64::from(tick) / 60.0 + 0.007 + jitter_s;
             if (hitches_s..hitches_s + hitch_s).contains(&at_s) { hitches_s + hitch_s } else { at_s }
@@ -174,8 +174,8 @@ impl Run {
         while rendered_s < back_s + 1.5 {
             while next_s <= rendered_s {
                 strikes.report();
-                told += 1;
-                next_s = told_at(told, jitter_s * rng.uniform());
+                message += 1;
+                next_s = told_at(message, jitter_s * rng.uniform());
             }
             if !(stops_s..back_s).contains(&rendered_s) {
                 let mut audio = vec![0.0; block];
@@ -333,8 +333,8 @@ fn a_device_that_is_lost_and_comes_back_does_not_bang() {
         println!("each {strikes_every} ticks, {seconds} s: {after:+.1} dB, {stale} stale");
         assert!(after <= 3.0, "each {strikes_every} ticks, {seconds} s: {after:+.1} dB");
         assert!(stale > 2, "{stale}");
-        let told =
+        let message =
             |because: &SilenceReason| matches!(because, SilenceReason::Stale { count } if *count == stale);
-        assert!(scene.why_silent().iter().any(told), "{:?}", scene.why_silent());
+        assert!(scene.why_silent().iter().any(message), "{:?}", scene.why_silent());
     }
 }

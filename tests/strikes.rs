@@ -227,12 +227,12 @@ fn a_pillow_is_equally_loud_at_every_rate() {
         let (reference, shortened) = foam(mass_kg, 44_100.0);
         assert_eq!(shortened, u64::from(mass_kg > 5.0), "{mass_kg} kg");
         for rate_hz in RATES_HZ {
-            let (peak, told) = foam(mass_kg, rate_hz);
+            let (peak, message) = foam(mass_kg, rate_hz);
             let db = 20.0 * (peak / reference).log10();
             println!("{mass_kg} kg at {rate_hz} Hz: {db:+.3} dB");
             assert!(
-                db.abs() <= 0.1 && told == shortened,
-                "{mass_kg} kg at {rate_hz} Hz: {db} dB, {told} told"
+                db.abs() <= 0.1 && message == shortened,
+                "{mass_kg} kg at {rate_hz} Hz: {db} dB, {message} told"
             );
         }
     }

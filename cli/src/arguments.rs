@@ -27,8 +27,8 @@ where
     T: Copy + Send + Sync + 'static,
 {
     let known = PossibleValuesParser::new(words.map(|(word, help, _)| PossibleValue::new(word).help(help)));
-    known.try_map(move |told| {
-        words.iter().find(|(word, ..)| *word == told).map(|(.., meaning)| *meaning).ok_or("is not known")
+    known.try_map(move |written| {
+        words.iter().find(|(word, ..)| *word == written).map(|(.., meaning)| *meaning).ok_or("is not known")
     })
 }
 

@@ -34,8 +34,8 @@ pub fn solve(file: &mut SceneFile) -> Result<(), CliError> {
         let changed = std::fs::metadata(&mesh).and_then(|data| data.modified()).ok();
         let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
         let asked = Asked { mesh, changed, size_m, material };
-        let told = |error: CliError| error.within(place(&file.path, entry));
-        entry.solved = Some(solved(asked).map_err(told)?);
+        let remarks = |error: CliError| error.within(place(&file.path, entry));
+        entry.solved = Some(solved(asked).map_err(remarks)?);
     }
     Ok(())
 }

@@ -89,14 +89,14 @@ fn place(text: &str) -> Result<[f64; 3], String> {
 pub fn run(options: &Options) -> Result<(), CliError> {
     let kind = Kind::of(options)?;
     let folder = Folder::open(&options.sounds.output)?;
-    let (body, mut told) = Body::of(options, &kind, &folder)?;
+    let (body, mut remarks) = Body::of(options, &kind, &folder)?;
     body.check(options)?;
     if options.at.is_none() && body.model.shapes.is_some() {
-        told.assumed.push("hit where its modes file says (--at X,Y,Z hits another place)".to_owned());
+        remarks.assumed.push("hit where its modes file says (--at X,Y,Z hits another place)".to_owned());
     }
     let sounds = body.sounds(options);
     let inputs = [options.what.clone()];
-    sounds::make(&sounds, &options.sounds, &folder, &inputs, told)
+    sounds::make(&sounds, &options.sounds, &folder, &inputs, remarks)
 }
 
 /// Meaning of the first argument.
@@ -148,7 +148,7 @@ impl Body {
         table.insert("name".into(), Value::String("body".into()));
         // Loudness is the set's; beside strokes there is nothing to be turned down for.
         table.insert("strike_gain".into(), Value::Float(1.0));
-        let mut told = Told::default();
+        let mut remarks = Told::default();
         let modes = match kind {
             Kind::Stock(stock) => {
                 let (material, size_m) = stock.usual();
@@ -157,27 +157,27 @@ impl Body {
                 let name = options.what.to_string_lossy().into_owned();
                 let of = material.name().unwrap_or_default();
                 if options.size.is_none() || options.material.is_none() {
-                    told.assumed.push(format!("a {name} of {of}, {size_m} m (--material, --size)"));
+                    remarks.assumed.push(format!("a {name} of {of}, {size_m} m (--material, --size)"));
                 }
                 let model = stock.modes(&material, size_m).map_err(CliError::from_error)?;
                 table.insert("stock".into(), Value::String(name.clone()));
                 table.insert("size_m".into(), Value::Float(size_m));
                 table.insert("material".into(), Value::String(of.to_owned()));
-                return Ok((Self { name: format!("{of}-{name}"), table, model }, told));
+                return Ok((Self { name: format!("{of}-{name}"), table, model }, remarks));
             }
             Kind::Modes => options.what.clone(),
             Kind::Recording => {
                 let modes = folder.path().join(format!("{}.modes.json", stem(&options.what)));
                 let fitted =
                     fit::fit(&fit::Options { burst_ms: Some(BURST_MS), ..plain(&options.what, &modes)? })?;
-                told.assumed.push(format!(
+                remarks.assumed.push(format!(
                     "fitted {}: {} modes, {:.0} dB above what they leave, in {}",
                     options.what.display(),
                     fitted.modes,
                     fitted.resynthesis_snr_db,
                     modes.display()
                 ));
-                told.warnings = fitted.warnings;
+                remarks.warnings = fitted.warnings;
                 modes
             }
         };
@@ -188,7 +188,7 @@ impl Body {
         }
         let home = std::env::current_dir().unwrap_or_default();
         let table = sounds::with_absolute_paths(&table, &home);
-        Ok((Self { name: stem(&options.what), table, model }, told))
+        Ok((Self { name: stem(&options.what), table, model }, remarks))
     }
 
     /// Refuses a place that the body does not have.

@@ -103,12 +103,14 @@ mod carried {
 
     /// Shows an address in a browser, which goes on by itself; or says why not.
     fn show(address: &str) -> Result<(), String> {
-        let told = |name| env::var(name).ok().filter(|value| !value.is_empty());
-        let program = match (told("BROWSER"), env::consts::OS) {
+        let variable = |name| env::var(name).ok().filter(|value| !value.is_empty());
+        let program = match (variable("BROWSER"), env::consts::OS) {
             (Some(program), _) => program,
             (None, "macos") => "open".to_owned(),
             (None, "windows") => "explorer".to_owned(),
-            _ if told("DISPLAY").or_else(|| told("WAYLAND_DISPLAY")).is_some() => "xdg-open".to_owned(),
+            _ if variable("DISPLAY").or_else(|| variable("WAYLAND_DISPLAY")).is_some() => {
+                "xdg-open".to_owned()
+            }
             _ => return Err("there is no screen here and no BROWSER".to_owned()),
         };
         let silent = || Stdio::null();

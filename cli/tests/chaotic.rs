@@ -6,7 +6,7 @@ use crate::support;
 
 use std::fs;
 use std::path::Path;
-use support::{asperity, told};
+use support::{asperity, message};
 
 /// The shipped scenes that are chaotic, as `docs/formats/scene.md` lists them.
 const CHAOTIC: [&str; 1] = ["scraped"];
@@ -48,7 +48,7 @@ fn moved(log: &str) -> String {
 #[test]
 fn demo_scenes_repeat_to_the_waveform_or_are_listed_chaotic() {
     let folder = tempfile::tempdir().unwrap();
-    let (status, _, err) = told(&asperity(folder.path(), &["demo", "-o", "."]));
+    let (status, _, err) = message(&asperity(folder.path(), &["demo", "-o", "."]));
     assert_eq!((status, err.as_str()), (0, ""));
     let mut chaotic = Vec::new();
     let mut scenes: Vec<_> =
@@ -61,7 +61,7 @@ fn demo_scenes_repeat_to_the_waveform_or_are_listed_chaotic() {
         let text = fs::read_to_string(&log).unwrap();
         fs::write(&log, moved(&text)).unwrap();
         let toml = format!("{name}.toml");
-        let (status, _, err) = told(&asperity(folder.path(), &["render", &toml, "-o", "moved"]));
+        let (status, _, err) = message(&asperity(folder.path(), &["render", &toml, "-o", "moved"]));
         assert_eq!((status, err.as_str()), (0, ""), "{name}");
         let apart = ["audio", "haptic"].map(|kind| {
             let of = |stem: &str| samples(&folder.path().join(format!("{stem}.{kind}.wav")));

@@ -50,12 +50,12 @@ fn recorded(name: &str) -> Option<Vec<Mode>> {
 /// once.
 fn held_back(modes: &[Mode]) -> Vec<f64> {
     let half = |which: usize| -> Vec<Mode> { modes.iter().skip(which).step_by(2).copied().collect() };
-    let told = |from: &[Mode], of: &[Mode]| -> Vec<f64> {
+    let message = |from: &[Mode], of: &[Mode]| -> Vec<f64> {
         let law = fit(from).unwrap();
         of.iter().map(|m| law.decay_per_s(m.frequency_hz) / m.decay_per_s).collect()
     };
     let (even, odd) = (half(0), half(1));
-    [told(&even, &odd), told(&odd, &even)].concat()
+    [message(&even, &odd), message(&odd, &even)].concat()
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::support;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
-use support::{asperity, told};
+use support::{asperity, message};
 
 fn samples(path: &Path) -> Vec<f32> {
     let mut reader = hound::WavReader::open(path).unwrap();
@@ -41,7 +41,7 @@ fn every_knock_is_heard(demo: &Path) {
 fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
     let folder = tempfile::tempdir().unwrap();
     let began = Instant::now();
-    let (status, out, err) = told(&asperity(folder.path(), &["demo"]));
+    let (status, out, err) = message(&asperity(folder.path(), &["demo"]));
     assert_eq!((status, err.as_str()), (0, ""));
     // Ten seconds on two idle cores; tests share them with others.
     assert!(began.elapsed().as_secs() < 60, "took {:?}", began.elapsed());
@@ -103,7 +103,7 @@ fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
 fn headroom_reports_every_promised_row() {
     let folder = tempfile::tempdir().unwrap();
     let began = Instant::now();
-    let (status, out, err) = told(&asperity(folder.path(), &["headroom", "--json"]));
+    let (status, out, err) = message(&asperity(folder.path(), &["headroom", "--json"]));
     assert_eq!((status, err.as_str()), (0, ""));
     // Half a minute on two idle cores; tests share theirs with others.
     assert!(began.elapsed().as_secs() < 180, "took {:?}", began.elapsed());
@@ -151,7 +151,7 @@ fn headroom_reports_every_promised_row() {
 #[test]
 fn the_report_covers_every_axis_with_named_references() {
     let folder = tempfile::tempdir().unwrap();
-    let (status, _, err) = told(&asperity(folder.path(), &["report", "-o", "figures"]));
+    let (status, _, err) = message(&asperity(folder.path(), &["report", "-o", "figures"]));
     assert_eq!((status, err.as_str()), (0, ""));
     let path = |name: &str| folder.path().join("figures").join(name);
     let text = fs::read_to_string(path("speed_vs_error.json")).unwrap();

@@ -1,6 +1,6 @@
 //! `asperity device` from the outside: a made sweep becomes a profile that a scene takes.
 
-use crate::support::{Scene, asperity, assert_refused, told};
+use crate::support::{Scene, asperity, assert_refused, message};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
@@ -58,7 +58,7 @@ fn a_sweep_as_wav_or_table_becomes_a_profile() {
     wav(&folder.join("sweep.wav"), &rows);
     csv(&folder.join("sweep.csv"), &rows);
     for name in ["sweep.wav", "sweep.csv"] {
-        let (status, out, err) = told(&asperity(folder, &["device", name, "-o", "my.toml", "--json"]));
+        let (status, out, err) = message(&asperity(folder, &["device", name, "-o", "my.toml", "--json"]));
         assert_eq!((status, err.as_str()), (0, ""));
         let report: serde_json::Value = serde_json::from_str(&out).unwrap();
         assert!((report["profile"]["quality"].as_f64().unwrap() / 6.0 - 1.0).abs() < 0.01, "{out}");
@@ -75,7 +75,7 @@ fn a_sweep_as_wav_or_table_becomes_a_profile() {
     let equalised =
         crate::support::TOML.replace("full_scale = 1.0", "full_scale = 1e-5\nequalise = \"my.toml\"");
     scene.write("scene.toml", equalised);
-    let (status, _, err) = told(&scene.render(&[]));
+    let (status, _, err) = message(&scene.render(&[]));
     assert_eq!((status, err.as_str()), (0, ""));
 }
 
@@ -104,6 +104,6 @@ fn a_recording_that_is_no_sweep_leaves_no_profile() {
     writer.finalize().unwrap();
     let output = asperity(folder, &["device", "mono.wav", "-o", "my.toml"]);
     assert_refused(&output, &["mono.wav", "has one channel", "drive and acceleration"]);
-    let (status, _, err) = told(&asperity(folder, &["device", "short.csv", "-o", "short.csv"]));
+    let (status, _, err) = message(&asperity(folder, &["device", "short.csv", "-o", "short.csv"]));
     assert!(status == 1 && err.starts_with("error: "), "{err}");
 }

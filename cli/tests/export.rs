@@ -5,7 +5,7 @@ use crate::support;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
-use support::{asperity, assert_refused, told};
+use support::{asperity, assert_refused, message};
 
 /// Two modes of a tetrahedron.
 fn body() -> Value {
@@ -42,14 +42,14 @@ fn what_is_exported_and_imported_again_has_its_modes_places_and_shapes() {
     let folder = folder.path();
     put(folder, "bell.modes.json", &body());
     for document in ["scene.gltf", "scene.glb"] {
-        let (status, out, err) = told(&asperity(
+        let (status, out, err) = message(&asperity(
             folder,
             &["export", "bell.modes.json", "--material", "steel", "-o", document, "--json"],
         ));
         assert_eq!((status, err.as_str()), (0, ""));
         let report: Value = serde_json::from_str(&out).unwrap();
         assert_eq!((report["bodies"].as_u64(), report["modes"].as_u64()), (Some(1), Some(2)));
-        let (status, _, err) = told(&asperity(folder, &["import", document, "-o", "back"]));
+        let (status, _, err) = message(&asperity(folder, &["import", document, "-o", "back"]));
         assert_eq!((status, err.as_str()), (0, ""));
         let (back, sent) = (read(&folder.join("back/bell-0.modes.json")), body());
         for key in ["points_m", "triangles", "phi_per_sqrt_kg"] {
@@ -81,7 +81,7 @@ fn what_is_exported_and_imported_again_has_its_modes_places_and_shapes() {
 fn a_packed_document_has_chunks_of_four_bytes_that_end_right() {
     let folder = tempfile::tempdir().unwrap();
     put(folder.path(), "bell.modes.json", &body());
-    let (status, ..) = told(&asperity(folder.path(), &["export", "bell.modes.json", "-o", "bell.glb"]));
+    let (status, ..) = message(&asperity(folder.path(), &["export", "bell.modes.json", "-o", "bell.glb"]));
     assert_eq!(status, 0);
     let bytes = fs::read(folder.path().join("bell.glb")).unwrap();
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;

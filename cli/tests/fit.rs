@@ -5,7 +5,7 @@ use crate::support;
 
 use serde_json::Value;
 use std::path::Path;
-use support::{asperity, assert_refused, told};
+use support::{asperity, assert_refused, message};
 
 const RATE_HZ: u32 = 44_100;
 
@@ -59,7 +59,7 @@ fn recording(folder: &Path, name: &str) {
 fn fit(folder: &Path, arguments: &[&str]) -> Value {
     let mut all = vec!["fit", "--json"];
     all.extend(arguments);
-    let (status, out, err) = told(&asperity(folder, &all));
+    let (status, out, err) = message(&asperity(folder, &all));
     assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }
@@ -158,7 +158,7 @@ fn a_fitted_body_struck_and_fitted_again_is_the_same_body() {
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
     let hit = r#"{"t":0.1,"event":"impact","body":"tile","speed_m_s":0.5,"mass_kg":0.005,"radius_m":0.002,"striker":"steel"}"#;
     std::fs::write(folder.join("hit.jsonl"), format!("{hit}\n")).unwrap();
-    let (status, _, err) = told(&asperity(folder, &["render", "scene.toml", "-o", "take"]));
+    let (status, _, err) = message(&asperity(folder, &["render", "scene.toml", "-o", "take"]));
     assert_eq!((status, err.as_str()), (0, ""));
     fit(folder, &["take.audio.wav", "-o", "again.modes.json"]);
     let (first, again) = (modes(folder, "tile.modes.json"), modes(folder, "again.modes.json"));

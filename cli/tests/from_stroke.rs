@@ -1,7 +1,7 @@
 //! `asperity texture from-stroke` from the outside: a stroke that the engine rendered is read and
 //! played elsewhere; what is no stroke is refused in one line.
 
-use crate::support::{asperity, assert_refused, told};
+use crate::support::{asperity, assert_refused, message};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -37,7 +37,7 @@ fn read(folder: &Path, more: &[&str]) -> Value {
     let mut arguments =
         vec!["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "out", "--json"];
     arguments.extend(more);
-    let (status, out, err) = told(&asperity(folder, &arguments));
+    let (status, out, err) = message(&asperity(folder, &arguments));
     assert_eq!((status, err.as_str()), (0, ""));
     serde_json::from_str(&out).unwrap()
 }
@@ -64,7 +64,7 @@ fn a_stroke_with_a_line_becomes_a_surface_that_renders() {
         report,
         serde_json::from_slice::<Value>(&fs::read(folder.join("out/surface.json")).unwrap()).unwrap()
     );
-    let (status, _, err) = told(&asperity(folder, &["render", "out/scene.toml", "-o", "take"]));
+    let (status, _, err) = message(&asperity(folder, &["render", "out/scene.toml", "-o", "take"]));
     assert_eq!((status, err.as_str()), (0, ""));
 }
 
@@ -151,12 +151,12 @@ fn models_of_a_toolkit_are_read_by_their_format() {
     );
     fs::write(folder.join("models.xml"), text).unwrap();
     let arguments = ["texture", "from-stroke", "models.xml", "--probe", "stylus", "-o", "out", "--json"];
-    let (status, out, err) = told(&asperity(folder, &arguments));
+    let (status, out, err) = message(&asperity(folder, &arguments));
     assert_eq!((status, err.as_str()), (0, ""));
     let report: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(report["friction"], 0.41);
     assert_eq!(report["recorded"].as_array().unwrap().len(), models.len());
-    let (status, _, err) = told(&asperity(folder, &["render", "out/scene.toml", "-o", "take"]));
+    let (status, _, err) = message(&asperity(folder, &["render", "out/scene.toml", "-o", "take"]));
     assert_eq!((status, err.as_str()), (0, ""));
     fs::write(folder.join("models.xml"), "<modelSet></modelSet>").unwrap();
     assert_refused(&asperity(folder, &arguments[..7]), &["no model"]);

@@ -3,7 +3,7 @@
 
 #![cfg(unix)]
 
-use crate::support::{Scene, asperity, told};
+use crate::support::{Scene, asperity, message};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -48,7 +48,7 @@ fn a_verb_without_disk_space_says_so_and_leaves_nothing() {
         &["batch", "strokes.toml", "--shard", "1/4", "-o", "out"],
     ] {
         fs::create_dir_all(scene.path("out")).unwrap();
-        let (status, _, err) = told(&without_room(scene.folder.path(), arguments));
+        let (status, _, err) = message(&without_room(scene.folder.path(), arguments));
         assert_eq!((status, err.lines().count()), (1, 1), "{arguments:?}: {err}");
         assert!(err.contains("cannot be written") && err.contains("; "), "{arguments:?}: {err}");
         // A data set keeps what the next run goes on from.
@@ -71,8 +71,8 @@ fn a_report_that_finds_no_room_is_no_success() {
     let mut render = Command::new(program);
     render.args(["render", "scene.toml", "-o", "out", "--json"]).current_dir(scene.folder.path());
     let output = render.stdout(File::options().write(true).open("/dev/full").unwrap()).output().unwrap();
-    let (status, _, err) = told(&output);
+    let (status, _, err) = message(&output);
     assert_eq!((status, err.lines().count()), (1, 1), "{err}");
     assert!(err.starts_with("error: stdout: cannot be written"), "{err}");
-    assert_eq!(told(&asperity(scene.folder.path(), &["--version"])).0, 0);
+    assert_eq!(message(&asperity(scene.folder.path(), &["--version"])).0, 0);
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
-use support::{Scene, asperity, assert_refused, told};
+use support::{Scene, asperity, assert_refused, message};
 
 fn write_wav(path: &Path, rate: u32, channels: &[&dyn Fn(f64) -> f64], seconds: f64) {
     let spec = hound::WavSpec {
@@ -29,7 +29,7 @@ fn sine(hz: f64, peak: f64) -> impl Fn(f64) -> f64 {
 }
 
 fn json_of(folder: &Path, arguments: &[&str]) -> Value {
-    let (status, out, err) = told(&asperity(folder, arguments));
+    let (status, out, err) = message(&asperity(folder, arguments));
     assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }
@@ -220,7 +220,7 @@ fn what_is_no_vibration_is_refused_without_a_file() {
 fn five_scenes_are_felt_alike_on_a_headsets_controller() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let (status, _, err) = told(&asperity(folder, &["demo", "-o", "demo"]));
+    let (status, _, err) = message(&asperity(folder, &["demo", "-o", "demo"]));
     assert_eq!(status, 0, "{err}");
     let mut scenes: Vec<String> = fs::read_dir(folder.join("demo"))
         .unwrap()

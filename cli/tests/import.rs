@@ -5,7 +5,7 @@ use crate::support;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::{asperity, assert_refused, told};
+use support::{asperity, assert_refused, message};
 
 fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_le_bytes()).collect()
@@ -47,9 +47,10 @@ fn put(folder: &Path, document: &Value, bytes: &[u8]) {
 }
 
 fn import_and_render(folder: &Path, document: &str) -> Value {
-    let (status, _, err) = told(&asperity(folder, &["import", document, "-o", "out"]));
+    let (status, _, err) = message(&asperity(folder, &["import", document, "-o", "out"]));
     assert_eq!((status, err.as_str()), (0, ""), "{document}");
-    let (status, out, err) = told(&asperity(folder, &["render", "out/scene.toml", "-o", "take", "--json"]));
+    let (status, out, err) =
+        message(&asperity(folder, &["render", "out/scene.toml", "-o", "take", "--json"]));
     assert_eq!((status, err.as_str()), (0, ""), "{document}");
     serde_json::from_str(&out).unwrap()
 }
@@ -146,7 +147,7 @@ fn every_sample_scene_of_the_draft_is_read_and_five_render() {
     let folder = tempfile::tempdir().unwrap();
     for (index, path) in found.iter().enumerate() {
         let path = path.to_str().unwrap();
-        let (status, _, err) = told(&asperity(folder.path(), &["import", path, "-o", "parsed"]));
+        let (status, _, err) = message(&asperity(folder.path(), &["import", path, "-o", "parsed"]));
         assert_eq!((status, err.as_str()), (0, ""), "{path}");
         if index % (found.len() / 5) == 0 {
             let report = import_and_render(folder.path(), path);
@@ -215,7 +216,7 @@ fn a_document_without_the_draft_gives_body_and_surface_in_metres() {
         put(folder.path(), &document, &bytes[..232]);
         fs::write(folder.path().join("my normals.png"), &bytes[232..]).unwrap();
         let (status, out, err) =
-            told(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
+            message(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
         assert_eq!((status, err.as_str()), (0, ""), "{out}");
         let report: Value = serde_json::from_str(&out).unwrap();
         assert_eq!((report["bodies"].as_u64(), report["surfaces"].as_u64()), (Some(1), Some(1)), "{report}");
@@ -240,7 +241,7 @@ fn surfaces_of_a_level_come_without_waiting_for_bodies() {
     put(folder.path(), &document, &bytes[..232]);
     fs::write(folder.path().join("my normals.png"), &bytes[232..]).unwrap();
     let arguments = ["import", "scene.gltf", "-o", "out", "--surfaces-only", "--json"];
-    let (status, out, err) = told(&asperity(folder.path(), &arguments));
+    let (status, out, err) = message(&asperity(folder.path(), &arguments));
     assert_eq!((status, err.as_str()), (0, ""), "{out}");
     let report: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((report["bodies"].as_u64(), report["surfaces"].as_u64()), (Some(0), Some(1)), "{report}");
@@ -267,7 +268,7 @@ fn a_mesh_without_coordinates_is_unwrapped_in_metres_or_told_why_not() {
         let (document, bytes) = sheet(open);
         put(folder.path(), &document, &bytes);
         let arguments = ["import", "scene.gltf", "-o", "out", "--unwrap", method, "--json"];
-        let (status, out, err) = told(&asperity(folder.path(), &arguments));
+        let (status, out, err) = message(&asperity(folder.path(), &arguments));
         assert_eq!((status, err.as_str()), (0, ""), "{out}");
         let report: Value = serde_json::from_str(&out).unwrap();
         let file = folder.path().join("out/brick-0.glb");
@@ -301,7 +302,7 @@ fn a_mesh_without_coordinates_is_unwrapped_in_metres_or_told_why_not() {
         assert!((0.03..0.2).contains(&widest), "metres of a box of 0.1 × 0.05 × 0.02: {widest}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let told =
+    let message =
         asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--unwrap", "energy", "--phi", "2"]);
-    assert!(String::from_utf8_lossy(&told.stderr).contains("must be 0 to 1"));
+    assert!(String::from_utf8_lossy(&message.stderr).contains("must be 0 to 1"));
 }

@@ -9,7 +9,7 @@ use image::{GrayImage, Luma, RgbImage};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use support::{MODES, asperity, assert_refused, stroke, told};
+use support::{MODES, asperity, assert_refused, message, stroke};
 
 /// A verb and its inputs, `OUT` standing for the output, and which file the output is.
 type Case = (&'static [&'static str], &'static str);
@@ -220,7 +220,7 @@ fn an_output_named_by_a_stem_or_folder_is_never_an_input() {
         for way in ["", "./", "below/../", "here/"] {
             let arguments: Vec<String> = arguments.iter().map(|part| part.replace("OUT", way)).collect();
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-            let (status, out, err) = told(&asperity(at, &arguments));
+            let (status, out, err) = message(&asperity(at, &arguments));
             assert_eq!((status, out.as_str()), (1, ""), "{arguments:?}: {err}");
             let now = everything(at);
             let kept = |files: &[(String, Vec<u8>)]| files.iter().find(|(name, _)| name == input).cloned();
@@ -234,7 +234,7 @@ fn an_output_named_by_a_stem_or_folder_is_never_an_input() {
 fn a_file_that_is_no_input_is_replaced_as_ever() {
     let folder = tempfile::tempdir().unwrap();
     for _ in 0..2 {
-        let (status, _, err) = told(&asperity(
+        let (status, _, err) = message(&asperity(
             folder.path(),
             &["texture", "solid", "granite", "--size", "64", "-o", "granite.png"],
         ));

@@ -9,12 +9,12 @@ use asperity_surface::solid_materials::SolidMaterial;
 use asperity_surface::solid_noise::SolidNoise;
 use maps::with_maps;
 use serde_json::{Value, json};
-use support::{Scene, asperity, assert_refused, told};
+use support::{Scene, asperity, assert_refused, message};
 use surfaces::{fractal, ground, ridges};
 
 fn report(scene: &Scene, arguments: &[&str]) -> Value {
     let all = [&["texture"], arguments, &["--json"]].concat();
-    let (status, out, err) = told(&asperity(scene.folder.path(), &all));
+    let (status, out, err) = message(&asperity(scene.folder.path(), &all));
     assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }
@@ -46,20 +46,20 @@ fn a_collection_is_ordered_by_likeness_of_feel() {
     let scene = collection();
     for material in ["fractal", "ground"] {
         let original = format!("maps/{material}-1.png");
-        let told = report(&scene, &["rank", &original, "maps", "--strokes", "20"]);
-        let ranking = told["ranking"].as_array().unwrap();
+        let message = report(&scene, &["rank", &original, "maps", "--strokes", "20"]);
+        let ranking = message["ranking"].as_array().unwrap();
         let names: Vec<&str> = ranking.iter().map(|entry| entry["file"].as_str().unwrap()).collect();
-        assert_eq!(names.len(), 5, "{told}");
+        assert_eq!(names.len(), 5, "{message}");
         assert_eq!(names[0], format!("{material}-1.png"));
-        assert_eq!(names[1], format!("{material}-2.png"), "{told}");
+        assert_eq!(names[1], format!("{material}-2.png"), "{message}");
         let distances: Vec<f64> = ranking.iter().map(|entry| entry["distance"].as_f64().unwrap()).collect();
         assert!(distances[0] == 0.0 && distances.is_sorted() && distances[2] > 2.0, "{distances:?}");
-        assert!(told["warnings"][0].as_str().unwrap().contains("broken.png"), "{told}");
+        assert!(message["warnings"][0].as_str().unwrap().contains("broken.png"), "{message}");
     }
     std::fs::create_dir(scene.path("empty")).unwrap();
     for folder in ["empty", "nowhere"] {
-        let told = asperity(scene.folder.path(), &["texture", "rank", "maps/ground-1.png", folder]);
-        assert_refused(&told, &[folder, "folder of height maps"]);
+        let message = asperity(scene.folder.path(), &["texture", "rank", "maps/ground-1.png", folder]);
+        assert_refused(&message, &[folder, "folder of height maps"]);
     }
 }
 
@@ -71,13 +71,14 @@ fn the_observer_tells_materials_apart_above_peoples_thresholds_only() {
             [&["compare", "a.png", "b.png", "--strokes", "60", "--relief-m", relief], observer].concat();
         report(&scene, &all)
     };
-    let told = compare("0.002", &["--observer"]);
-    assert_eq!(told["judge"], "observer");
-    assert!(told["originals"]["reference"].as_f64().unwrap() > 0.75, "{told}");
+    let message = compare("0.002", &["--observer"]);
+    assert_eq!(message["judge"], "observer");
+    assert!(message["originals"]["reference"].as_f64().unwrap() > 0.75, "{message}");
     // A tenth of a micrometre: a machine's business.
-    let told = [compare("1e-7", &[]), compare("1e-7", &["--observer"])];
-    let [machine, observer] = told.each_ref().map(|told| told["originals"]["reference"].as_f64().unwrap());
-    assert_eq!(told[0]["judge"], "machine");
+    let message = [compare("1e-7", &[]), compare("1e-7", &["--observer"])];
+    let [machine, observer] =
+        message.each_ref().map(|message| message["originals"]["reference"].as_f64().unwrap());
+    assert_eq!(message[0]["judge"], "machine");
     assert!(machine > 0.9 && (observer - 0.5).abs() < 0.13, "{machine} {observer}");
 }
 
@@ -104,8 +105,8 @@ fn every_solid_is_a_shader_that_is_valid_and_needs_no_uniforms() {
             if !kind.is_empty() {
                 arguments.extend(["--kind", kind]);
             }
-            let told = report(&scene, &arguments);
-            let (name, text) = (told["name"].as_str().unwrap(), told["shader"].as_str().unwrap());
+            let message = report(&scene, &arguments);
+            let (name, text) = (message["name"].as_str().unwrap(), message["shader"].as_str().unwrap());
             let module = naga::front::wgsl::parse_str(text)
                 .unwrap_or_else(|error| panic!("{name}: {}\n{text}", error.emit_to_string(text)));
             use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -118,7 +119,7 @@ fn every_solid_is_a_shader_that_is_valid_and_needs_no_uniforms() {
         }
     }
     let plain = asperity(scene.folder.path(), &["texture", "solid", "gravel", "--shader", "glsl"]);
-    let (status, text, _) = told(&plain);
+    let (status, text, _) = message(&plain);
     assert!(
         status == 0 && text.contains("float gravel_height(vec3 at_m) {") && !text.contains('$'),
         "{text}"
@@ -134,9 +135,9 @@ fn every_solid_is_a_shader_that_is_valid_and_needs_no_uniforms() {
         ),
         (&["solid", "grating", "--duty", "1.5", "-o", "a.png"], &["duty", "0.95"]),
     ] {
-        let told = asperity(scene.folder.path(), &[&["texture"], arguments].concat());
-        let text = String::from_utf8_lossy(&told.stderr).into_owned();
-        assert!(!told.status.success() && text.lines().count() == 1, "{text}");
+        let message = asperity(scene.folder.path(), &[&["texture"], arguments].concat());
+        let text = String::from_utf8_lossy(&message.stderr).into_owned();
+        assert!(!message.status.success() && text.lines().count() == 1, "{text}");
         assert!(words.iter().all(|word| text.contains(word)), "{arguments:?}: {text}");
         assert!(!scene.path(arguments[arguments.len() - 1]).exists());
     }
@@ -176,10 +177,10 @@ fn a_grating_of_a_scene_is_felt_at_its_pitch() {
 #[test]
 fn a_table_of_the_sources_stands_beside_what_is_printed() {
     let scene = Scene::new();
-    let (status, list, _) = told(&asperity(scene.folder.path(), &["evidence", "--list"]));
+    let (status, list, _) = message(&asperity(scene.folder.path(), &["evidence", "--list"]));
     assert!(status == 0 && list.contains("004-table-6-1"), "{list}");
     let ran = asperity(scene.folder.path(), &["evidence", "001-fig-4", "-o", "out", "--json"]);
-    let (status, out, err) = told(&ran);
+    let (status, out, err) = message(&ran);
     assert_eq!((status, err.as_str()), (0, ""));
     let printed: Value = serde_json::from_str(&out).unwrap();
     let written: Value =
@@ -237,12 +238,12 @@ fn a_solid_is_baked_over_a_mesh_where_its_texels_lie() {
     // Three quarters of the map, so that a border and a rest are left.
     put("square.gltf", 0.75, true);
     let arguments = ["solid", "granite", "--bake", "square.gltf", "--size", "128", "-o", "granite.png"];
-    let told = report(&scene, &arguments);
-    assert_eq!(told["warnings"], json!([]), "{told}");
+    let message = report(&scene, &arguments);
+    assert_eq!(message["warnings"], json!([]), "{message}");
     let texel_m = 0.04 / (0.75 * 128.0);
-    let told_m = told["metres_per_px"].as_f64().unwrap();
+    let told_m = message["metres_per_px"].as_f64().unwrap();
     assert!((told_m / texel_m - 1.0).abs() < 1e-6, "{told_m} m a texel");
-    let grey_m = told["metres_per_grey"].as_f64().unwrap();
+    let grey_m = message["metres_per_grey"].as_f64().unwrap();
     let map = image::open(folder.join("granite.png")).unwrap().into_luma16();
     let parameters = SolidMaterial::Granite.parameters();
     let noise = SolidNoise::new(parameters, 1).unwrap();
@@ -262,10 +263,10 @@ fn a_solid_is_baked_over_a_mesh_where_its_texels_lie() {
         ("bare.gltf", 1.0, false, &["bare.gltf", "no texture coordinates", "--unwrap energy"]),
     ] {
         put(name, repeats, with_coordinates);
-        let told = asperity(folder, &["texture", "solid", "granite", "--bake", name, "-o", "a.png"]);
-        assert_refused(&told, words);
+        let message = asperity(folder, &["texture", "solid", "granite", "--bake", name, "-o", "a.png"]);
+        assert_refused(&message, words);
     }
-    let told = asperity(folder, &["texture", "solid", "grating", "--bake", "square.gltf", "-o", "a.png"]);
-    assert_refused(&told, &["--bake", "takes no grating"]);
+    let message = asperity(folder, &["texture", "solid", "grating", "--bake", "square.gltf", "-o", "a.png"]);
+    assert_refused(&message, &["--bake", "takes no grating"]);
     assert!(!folder.join("a.png").exists());
 }

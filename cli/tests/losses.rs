@@ -3,21 +3,21 @@
 use crate::support;
 
 use std::fmt::Write as _;
-use support::{MODES, Scene, TOML, assert_refused, impact, stroke, told};
+use support::{MODES, Scene, TOML, assert_refused, impact, message, stroke};
 
 /// What a render of this log prints without `--json`; it succeeds, and says the same in `warnings`.
 fn said(toml: &str, log: &str) -> String {
     let scene = Scene::new();
     scene.write("scene.toml", toml);
     scene.write("stroke.jsonl", log);
-    let (status, out, err) = told(&scene.render(&[]));
+    let (status, out, err) = message(&scene.render(&[]));
     assert_eq!((status, err.as_str()), (0, ""), "{out}");
-    let told: Vec<&str> = out.lines().filter_map(|line| line.strip_prefix("warning: ")).collect();
+    let message: Vec<&str> = out.lines().filter_map(|line| line.strip_prefix("warning: ")).collect();
     let report = scene.report(&[]);
     let warnings: Vec<&str> =
         report["warnings"].as_array().unwrap().iter().filter_map(|w| w.as_str()).collect();
-    assert_eq!(told, warnings);
-    told.join("\n")
+    assert_eq!(message, warnings);
+    message.join("\n")
 }
 
 fn assert_says(said: &str, parts: &[&str]) {
@@ -178,19 +178,22 @@ fn each_output_that_is_silent_is_told_with_its_own_reason() {
         ],
     );
     let two = format!("{TOML}\n[[actuator]]\nfull_scale = 1.0\n");
-    let told = said(&two, &stroke(1, 0.3));
-    assert_says(&told, &["haptic channel 1 is silence: nothing in the log names it; write \"actuator\":1"]);
-    assert!(!told.contains("channel 0") && !told.contains("audio"), "{told}");
-    let buses = format!("{TOML}\n[[audio]]\nname = \"room\"\n[[audio]]\nname = \"hand\"\n");
-    let told = said(&buses, &stroke(1, 0.3));
+    let message = said(&two, &stroke(1, 0.3));
     assert_says(
-        &told,
+        &message,
+        &["haptic channel 1 is silence: nothing in the log names it; write \"actuator\":1"],
+    );
+    assert!(!message.contains("channel 0") && !message.contains("audio"), "{message}");
+    let buses = format!("{TOML}\n[[audio]]\nname = \"room\"\n[[audio]]\nname = \"hand\"\n");
+    let message = said(&buses, &stroke(1, 0.3));
+    assert_says(
+        &message,
         &["audio bus \"hand\" is silence: no body plays on it; write bus = \"hand\" in a [[body]]"],
     );
     let muted = stroke(1, 0.3).replace("\"event\":\"begin\"", "\"event\":\"begin\",\"gain\":0");
-    let told = said(TOML, &muted);
-    assert_says(&told, &["the audio is silence", "\"gain\" is 0 in every begin and impact of the log"]);
-    assert_says(&told, &["every haptic channel is silence: \"gain\" is 0"]);
+    let message = said(TOML, &muted);
+    assert_says(&message, &["the audio is silence", "\"gain\" is 0 in every begin and impact of the log"]);
+    assert_says(&message, &["every haptic channel is silence: \"gain\" is 0"]);
     let unheard = TOML.replace("roughness = 0.7", "roughness = 0.7\nexcitation = []");
     assert_says(
         &said(&unheard, &stroke(1, 0.3)),
@@ -201,13 +204,13 @@ fn each_output_that_is_silent_is_told_with_its_own_reason() {
 #[test]
 fn felt_impacts_and_answering_sand_are_not_called_silent() {
     let felt = impact(0.1).replace("\"striker\"", "\"actuator\":0,\"striker\"");
-    let told = said(TOML, &felt);
-    assert!(!told.contains("haptic"), "{told}");
+    let message = said(TOML, &felt);
+    assert!(!message.contains("haptic"), "{message}");
     let sand = TOML.replace("roughness = 0.7", "sand = { cells = 64, depth_m = 0.02 }");
     let deep = stroke(1, 0.3).replace("\"normal_force_n\":0.6", "\"depth_m\":0.004");
     assert_ne!(deep, stroke(1, 0.3));
-    let told = said(&sand, &deep);
-    assert!(!told.contains("no contact was pressed"), "{told}");
+    let message = said(&sand, &deep);
+    assert!(!message.contains("no contact was pressed"), "{message}");
 }
 
 #[test]

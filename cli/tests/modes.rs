@@ -100,9 +100,9 @@ fn shapes_beside_the_modes_file_equal_shapes_within_it() {
     assert_eq!(render("packed").len(), render("within").len());
     std::fs::remove_file(sidecar).unwrap();
     let output = asperity(at, &["render", "beside.toml", "-o", "again"]);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!((output.status.code(), told.lines().count()), (Some(1), 1), "{told}");
-    assert!(told.contains("shapes_beside") && told.contains("beside.modes.shapes"), "{told}");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+    assert!(message.contains("shapes_beside") && message.contains("beside.modes.shapes"), "{message}");
     assert!(!at.join("again.audio.wav").exists());
 }
 
@@ -177,7 +177,7 @@ fn what_is_no_body_is_one_line_and_no_file() {
     std::fs::write(at.join("sheet.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     std::fs::write(at.join("empty.stl"), "").unwrap();
     std::fs::write(at.join("cut.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0").unwrap();
-    for (arguments, told) in [
+    for (arguments, message) in [
         (vec!["sheet.obj", "--material", "steel"], "--thickness"),
         (vec!["empty.stl", "--material", "steel"], "empty"),
         (vec!["cut.msh", "--material", "steel"], "cut short"),
@@ -193,7 +193,7 @@ fn what_is_no_body_is_one_line_and_no_file() {
         let output = asperity(at, &all);
         let text = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{text}");
-        assert!(text.starts_with("error: ") && text.lines().count() == 1 && text.contains(told), "{text}");
+        assert!(text.starts_with("error: ") && text.lines().count() == 1 && text.contains(message), "{text}");
         assert!(!at.join("x.modes.json").exists());
     }
 }
@@ -231,8 +231,8 @@ fn a_scene_with_a_mesh_sounds_as_with_its_modes_file() {
         ("shape = \"bar.obj\"\nstock = \"bar\"", ["shape", "beside stock"]),
     ] {
         let output = scene("refused", body);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!((output.status.code(), told.lines().count()), (Some(1), 1), "{told}");
-        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 }

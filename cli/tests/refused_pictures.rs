@@ -8,7 +8,7 @@ use crate::surfaces;
 use asperity_surface::image_io::save_gray16;
 use asperity_surface::raster::Raster;
 use maps::with_maps;
-use support::{asperity, assert_refused, told};
+use support::{asperity, assert_refused, message};
 use surfaces::ground;
 
 /// A PNG that promises 100 000 × 100 000 texels.
@@ -73,7 +73,7 @@ fn a_blank_reference_and_a_blank_normal_map_are_reported_flat() {
             (&["from-normals", name, "-o", "out.png"], "warning: all normals of the map are alike"),
         ] {
             let all: Vec<&str> = std::iter::once("texture").chain(arguments.iter().copied()).collect();
-            let (status, said, err) = told(&asperity(scene.folder.path(), &all));
+            let (status, said, err) = message(&asperity(scene.folder.path(), &all));
             assert!(status == 0 && said.contains(word), "{arguments:?}: {said}{err}");
         }
     }
@@ -93,7 +93,7 @@ fn a_normal_map_with_x_in_alpha_is_told_from_a_photograph() {
     image::RgbaImage::from_fn(64, 64, ribs).save(scene.path("ribs.png")).unwrap();
     let run = |name, more: &[&str]| {
         let all = [&["texture", "from-normals", name, "-o", "out.png"], more].concat();
-        told(&asperity(scene.folder.path(), &all))
+        message(&asperity(scene.folder.path(), &all))
     };
     for name in ["grey.png", "white.png", "ribs.png"] {
         let (status, said, err) = run(name, &[]);
@@ -128,7 +128,7 @@ fn options_that_make_no_sense_are_refused() {
         &["from-photo", "a.png", "-o", "o", "--exaggerate", "0"],
         &["from-photo", "a.png", "-o", "o", "--width-m", "0.04", "--width-mm", "50"],
     ] {
-        let (status, out, err) = told(&run(usage));
+        let (status, out, err) = message(&run(usage));
         assert_eq!((status, out.as_str()), (2, ""), "{usage:?}: {err}");
     }
     for (bad, field) in [

@@ -3,12 +3,12 @@
 use crate::support;
 
 use std::fs;
-use support::{MODES, Scene, TOML, assert_refused, impact, stroke, told};
+use support::{MODES, Scene, TOML, assert_refused, impact, message, stroke};
 
 #[test]
 fn a_render_writes_two_float_files_of_equal_length() {
     let scene = Scene::new();
-    let (status, out, err) = told(&scene.render(&[]));
+    let (status, out, err) = message(&scene.render(&[]));
     assert_eq!((status, err.as_str()), (0, ""));
     assert!(out.contains("out.audio.wav"), "{out}");
     assert_eq!(scene.outputs(), ["out.audio.wav", "out.haptic.wav"]);
@@ -32,7 +32,7 @@ fn pickups_of_a_scene_are_written_a_channel_each() {
     scene.write("scene.toml", toml + &pickup("chip", 1.0, "sensor = \"adxl1005\""));
     let motion = "{\"t\":0.0,\"event\":\"motion\",\"body\":\"bar\",\"gravity_m_s2\":[0,0,-9.81]}\n";
     scene.write("stroke.jsonl", motion.to_owned() + &impact(0.3));
-    let (status, _, err) = told(&scene.render(&[]));
+    let (status, _, err) = message(&scene.render(&[]));
     assert_eq!(status, 0, "{err}");
     assert_eq!(scene.outputs(), ["out.audio.wav", "out.haptic.wav", "out.pickup.wav"]);
     let (read, heard) = (scene.samples("out.pickup.wav"), scene.samples("out.audio.wav"));
@@ -178,7 +178,7 @@ fn forces_come_at_the_wanted_rate_with_the_same_mean() {
         assert!((a - b).abs() < 0.002, "axis {axis}: {a} and {b} N");
     }
     for (rate, right) in [("0", "1 to 20000 Hz"), ("x", "not a number")] {
-        let (status, _, error) = told(&scene.render(&["--force", "--force-rate", rate]));
+        let (status, _, error) = message(&scene.render(&["--force", "--force-rate", rate]));
         assert!(status == 2 && error.contains("--force-rate") && error.contains(right), "{error}");
     }
     let output = scene.render(&["--rate", "8000", "--force", "--force-rate", "9000"]);
@@ -267,7 +267,7 @@ fn paths_inside_a_file_are_relative_to_that_file() {
         elsewhere.path(),
         &["render", toml.to_str().unwrap(), "-o", stem.to_str().unwrap(), "--json"],
     );
-    assert_eq!(told(&output).0, 0, "{}", told(&output).2);
+    assert_eq!(message(&output).0, 0, "{}", message(&output).2);
     assert!(elsewhere.path().join("there.v2.audio.wav").exists());
 }
 

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use support::{asperity, told};
+use support::{asperity, message};
 
 const CASES: [&str; 6] = ["smooth", "rough", "bouncing", "steep", "fast", "light"];
 /// Seeds that the report does not draw its profiles from.
@@ -24,7 +24,7 @@ fn report() -> (&'static Path, &'static Value) {
     static MADE: OnceLock<(tempfile::TempDir, Value)> = OnceLock::new();
     let (folder, report) = MADE.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
-        let (status, _, err) = told(&asperity(folder.path(), &["report", "-o", "."]));
+        let (status, _, err) = message(&asperity(folder.path(), &["report", "-o", "."]));
         assert_eq!((status, err.as_str()), (0, ""));
         let text = fs::read_to_string(folder.path().join("speed_vs_error.json")).unwrap();
         (folder, serde_json::from_str(&text).unwrap())
@@ -69,7 +69,7 @@ fn every_case_is_a_scene_that_renders() {
     for name in CASES {
         let stem = format!("{name}.out");
         let (status, out, err) =
-            told(&asperity(&folder, &["render", &format!("{name}.toml"), "-o", &stem, "--json"]));
+            message(&asperity(&folder, &["render", &format!("{name}.toml"), "-o", &stem, "--json"]));
         assert_eq!((status, err.as_str()), (0, ""), "{name}");
         let render: Value = serde_json::from_str(&out).unwrap();
         assert!(number(&render["audio_peak"]) > 0.0 && number(&render["haptic_peak"][0]) > 0.0, "{name}");
@@ -90,7 +90,7 @@ struct Trace {
 fn trace(folder: &Path, scene: &str, more: &[&str], rate_hz: f64) -> Trace {
     let mut arguments = vec!["render", scene, "-o", "take", "--trace"];
     arguments.extend(more);
-    let (status, _, err) = told(&asperity(folder, &arguments));
+    let (status, _, err) = message(&asperity(folder, &arguments));
     assert_eq!((status, err.as_str()), (0, ""));
     let text = fs::read_to_string(folder.join("take.trace.csv")).unwrap();
     let mut trace = Trace::default();

@@ -5,7 +5,7 @@ use crate::support;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{asperity, assert_refused, told};
+use support::{asperity, assert_refused, message};
 
 /// A folder with the recording of one hit: three modes, and a note that is no sound.
 fn hit(folder: &Path) {
@@ -44,7 +44,7 @@ fn two_quick_scorecards_are_one_but_for_speed_and_failures_come_first() {
     hit(&folder.path().join("hits"));
     let card = |name: &str| -> Value {
         let all = ["scorecard", "--quick", "--json", "--recordings", "hits", "-o", name];
-        let (status, out, err) = told(&asperity(folder.path(), &all));
+        let (status, out, err) = message(&asperity(folder.path(), &all));
         assert_eq!((status, err.as_str()), (0, ""));
         let written = fs::read_to_string(folder.path().join(name).join("scorecard.json")).unwrap();
         assert_eq!(out, written);

@@ -6,10 +6,10 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use support::{Scene, asperity, assert_refused, told};
+use support::{Scene, asperity, assert_refused, message};
 
 fn json_of(folder: &Path, arguments: &[&str]) -> Value {
-    let (status, out, err) = told(&asperity(folder, arguments));
+    let (status, out, err) = message(&asperity(folder, arguments));
     assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }

@@ -3,7 +3,7 @@
 use crate::support;
 
 use std::fs;
-use support::{Scene, TOML, asperity, assert_refused, stroke, told};
+use support::{Scene, TOML, asperity, assert_refused, message, stroke};
 
 const CELL: &str =
     "relief_m = 0.0002\nlattice = { cell = \"cell.png\", t1_m = [0.004, 0.0], t2_m = [0.0, 0.004] }";
@@ -65,7 +65,7 @@ fn texture_solid_and_brownian_write_sixteen_bit_pictures_with_their_scale() {
         &["texture", "brownian", "--hurst", "0.5", "--size", "64", "--seed", "3", "-o", "a.png", "--json"],
         &["texture", "brownian", "--hurst", "0.5", "--size", "65", "--midpoint", "-o", "a.png", "--json"],
     ] {
-        let (status, out, err) = told(&asperity(scene.folder.path(), arguments));
+        let (status, out, err) = message(&asperity(scene.folder.path(), arguments));
         assert_eq!((status, err.as_str()), (0, ""));
         let report: serde_json::Value = serde_json::from_str(&out).unwrap();
         let picture = image::open(scene.path("a.png")).unwrap();
@@ -86,7 +86,7 @@ fn texture_solid_and_brownian_write_sixteen_bit_pictures_with_their_scale() {
         &["texture", "brownian", "--hurst", "nan", "-o", "b.png"],
         &["texture", "solid", "wood", "--size", "0", "-o", "b.png"],
     ] {
-        assert_eq!(told(&asperity(scene.folder.path(), wrong)).0, 2);
+        assert_eq!(message(&asperity(scene.folder.path(), wrong)).0, 2);
     }
     assert!(!scene.path("b.png").exists());
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use support::{asperity, told};
+use support::{asperity, message};
 
 type Point = [f64; 3];
 
@@ -117,7 +117,7 @@ fn solved_hz(folder: &Path, name: &str, mesh: &Mesh) -> Vec<f64> {
     let arguments =
         ["modes", &input, "-o", &output, "--max-modes", "16", "--young-pa", "1e9", "--poisson", "0.3"];
     let run = asperity(folder, &[&arguments[..], &["--density-kg-m3", "1000", "--json"]].concat());
-    let (status, _, err) = told(&run);
+    let (status, _, err) = message(&run);
     assert_eq!(status, 0, "{err}");
     let file: Value = serde_json::from_slice(&fs::read(folder.join(&output)).unwrap()).unwrap();
     let hz = |mode: &Value| {

@@ -9,14 +9,14 @@ use std::io::{BufRead, BufReader, Read, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use support::{Scene, asperity, assert_refused, told};
+use support::{Scene, asperity, assert_refused, message};
 
 const HEADER: &str = "participant,trial,protocol,stimulus,shown,answer,correct,response_ms,time";
 
 fn analysed(folder: &Path, arguments: &[&str]) -> Value {
     let mut all = vec!["study", "analyse", "--json"];
     all.extend(arguments);
-    let (status, out, err) = told(&asperity(folder, &all));
+    let (status, out, err) = message(&asperity(folder, &all));
     assert_eq!((status, err.as_str()), (0, ""));
     serde_json::from_str(&out).unwrap()
 }
@@ -36,7 +36,7 @@ fn a_stranger_s_scenes_and_wavs_become_one_page_with_numbered_stimuli() {
                  [[stimulus]]\nname = \"full\"\nscene = \"scene.toml\"\nrole = \"reference\"\n\
                  [[stimulus]]\nname = \"other\"\nscene = \"scene.toml\"\n";
     scene.write("study.toml", study);
-    let (status, out, err) = told(&asperity(scene.folder.path(), &["study", "study.toml", "-o", "page"]));
+    let (status, out, err) = message(&asperity(scene.folder.path(), &["study", "study.toml", "-o", "page"]));
     assert_eq!((status, err.as_str()), (0, ""));
     assert!(out.contains("page/index.html"), "{out}");
     let carried = carried(&scene.path("page/index.html"));
@@ -62,12 +62,12 @@ fn every_example_is_a_study_that_becomes_a_page() {
     for (name, stimuli) in
         [("six-plates", 18), ("seven-materials", 21), ("metamers", 10), ("heights", 6), ("dimension", 5)]
     {
-        let (status, out, err) = told(&asperity(folder.path(), &["study", "--example", name, "-o", name]));
+        let (status, out, err) = message(&asperity(folder.path(), &["study", "--example", name, "-o", name]));
         assert_eq!((status, err.as_str()), (0, ""));
         assert!(out.contains("next: asperity study"), "{out}");
         let study = format!("{name}/study.toml");
         let (status, out, err) =
-            told(&asperity(folder.path(), &["study", &study, "-o", &format!("{name}/page")]));
+            message(&asperity(folder.path(), &["study", &study, "-o", &format!("{name}/page")]));
         assert_eq!((status, err.as_str()), (0, ""), "{name}: {err}");
         assert!(!out.contains("is silent"), "{name}: {out}");
         let page = carried(&folder.path().join(name).join("page/index.html"));
@@ -105,7 +105,7 @@ fn a_study_that_cannot_be_asked_is_refused_in_one_line() {
         &["study", "--example", "seven", "-o", "x"],
         &["study", "analyse"],
     ] {
-        let (status, out, err) = told(&asperity(scene.folder.path(), arguments));
+        let (status, out, err) = message(&asperity(scene.folder.path(), arguments));
         assert_eq!((status, out.as_str(), err.lines().count()), (2, "", 1), "{arguments:?}: {err}");
     }
 }
@@ -151,7 +151,7 @@ fn a_confusion_matrix_and_its_intervals_come_from_answer_files() {
     assert!((share["ci95"][1].as_f64().unwrap() - 0.9716).abs() < 1e-3, "{share}");
     assert_eq!(report["attention"]["failed"], serde_json::json!({ "p0": 1 }));
     assert_eq!(report["paper"]["n"], 8);
-    let (status, out, _) = told(&asperity(folder.path(), &["study", "analyse", "p0.csv", "p1.csv"]));
+    let (status, out, _) = message(&asperity(folder.path(), &["study", "analyse", "p0.csv", "p1.csv"]));
     assert!(status == 0 && out.contains("right 0.944 (") && out.contains("Fig. 10"), "{out}");
 }
 

@@ -11,7 +11,7 @@ use asperity_surface::raster::Raster;
 use maps::with_maps;
 use serde_json::Value;
 use std::path::Path;
-use support::{Scene, TOML, asperity, assert_refused, stroke, told};
+use support::{Scene, TOML, asperity, assert_refused, message, stroke};
 use surfaces::{fractal, grid, ground, ridges, wood};
 
 /// Runs a verb with `--json`, which must succeed.
@@ -19,7 +19,7 @@ fn report(scene: &Scene, arguments: &[&str]) -> Value {
     let mut all = vec!["texture"];
     all.extend(arguments);
     all.push("--json");
-    let (status, out, err) = told(&asperity(scene.folder.path(), &all));
+    let (status, out, err) = message(&asperity(scene.folder.path(), &all));
     assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }
@@ -97,9 +97,9 @@ fn distances_are_those_of_the_file_for_any_method() {
         let settings = MetamerOptions { bands: 3, ..MetamerOptions::default() };
         let mut feel = Statistics::new(&reference, 128, 128, &settings).unwrap();
         let found = feel.distance(&heights, true);
-        for (told, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
-            let told = number(&made, told);
-            assert!((told - found).abs() <= 0.05 * found, "{more:?}: told {told}, in the file {found}");
+        for (message, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
+            let message = number(&made, message);
+            assert!((message - found).abs() <= 0.05 * found, "{more:?}: told {message}, in the file {found}");
         }
         let limit = file.values.iter().filter(|grey| **grey <= 0.0 || **grey >= 1.0).count();
         let stretched = (offset, scale) != (0.0, 1.0);
@@ -166,11 +166,15 @@ fn a_metamer_has_the_stated_size_and_coarse_texels_warn() {
         arguments.extend(["--width-mm", width_mm, "--base-mm", "3", "--relief-mm", "1.5"]);
         let made = report(&scene, &arguments);
         let (volume, size, closed) = solid(&std::fs::read(scene.path("both.stl")).unwrap());
-        let told = [number(&made, "width_mm"), number(&made, "height_mm"), 3.0 + number(&made, "relief_mm")];
-        assert!(closed && told[0].to_string() == width_mm && (told[2] - 4.5).abs() < 1e-9);
-        assert!(size.iter().zip(told).all(|(size, told)| (size - told).abs() < 1e-4), "{size:?} {told:?}");
+        let message =
+            [number(&made, "width_mm"), number(&made, "height_mm"), 3.0 + number(&made, "relief_mm")];
+        assert!(closed && message[0].to_string() == width_mm && (message[2] - 4.5).abs() < 1e-9);
+        assert!(
+            size.iter().zip(message).all(|(size, message)| (size - message).abs() < 1e-4),
+            "{size:?} {message:?}"
+        );
         let mean_mm = 1.5 * grey(&scene, "both.png").mean();
-        assert!((volume / (told[0] * told[1] * (3.0 + mean_mm)) - 1.0).abs() < 2e-3, "{volume}");
+        assert!((volume / (message[0] * message[1] * (3.0 + mean_mm)) - 1.0).abs() < 2e-3, "{volume}");
         assert_eq!(made["warnings"].to_string().contains("0.25 mm"), coarse);
     }
     for (bad, field) in [("--base-mm", "base_m"), ("--width-mm", "texel_m")] {
@@ -178,8 +182,8 @@ fn a_metamer_has_the_stated_size_and_coarse_texels_warn() {
         arguments.extend(print);
         arguments[9] = "other.stl";
         arguments.extend([bad, "1e9"]);
-        let told = asperity(scene.folder.path(), &arguments);
-        assert_refused(&told, &[field]);
+        let message = asperity(scene.folder.path(), &arguments);
+        assert_refused(&message, &[field]);
         assert!(!scene.path("other.stl").exists());
     }
 }
@@ -197,7 +201,7 @@ fn a_height_map_becomes_a_solid_of_its_size_in_either_format() {
     let (low, high) = heights.range();
     let exact = [30.0, 20.0, 3.0 + 1.5 * (high - low)];
     assert!(
-        closed && size.iter().zip(exact).all(|(size, told)| (size / told - 1.0).abs() < 1e-6),
+        closed && size.iter().zip(exact).all(|(size, message)| (size / message - 1.0).abs() < 1e-6),
         "{size:?}"
     );
     let exact = 600.0 * (3.0 + 1.5 * (heights.mean() - low));
@@ -206,8 +210,8 @@ fn a_height_map_becomes_a_solid_of_its_size_in_either_format() {
     // that.
     make("rough.glb");
     let solve = ["modes", "rough.glb", "--material", "plastic", "--max-modes", "3", "-o", "r.json", "--json"];
-    let told = asperity(scene.folder.path(), &solve);
-    let solved: Value = serde_json::from_slice(&told.stdout).unwrap();
+    let message = asperity(scene.folder.path(), &solve);
+    let solved: Value = serde_json::from_slice(&message.stdout).unwrap();
     assert!((number(&solved, "volume_m3") * 1e9 / exact - 1.0).abs() < 0.05, "{solved}");
     let refused = |output: &str, base: &str| {
         let arguments = ["texture", "solid-of", "rough.png", "-o", output, "--base-mm", base];
@@ -251,20 +255,23 @@ fn five_textures_are_told_apart_and_their_metamers_are_not() {
     let maps = ["compare", "1.png", "2.png", "3.png", "4.png", "5.png"];
     let mut arguments = maps.to_vec();
     arguments.extend(["--metamers", "--strokes", "60"]);
-    let told = report(&scene, &arguments);
-    let mean = |table: &str| number(&told[table], "mean");
+    let message = report(&scene, &arguments);
+    let mean = |table: &str| number(&message[table], "mean");
     let (originals, single, metamers) = (mean("originals"), mean("single_pass"), mean("metamers"));
     println!("originals {originals:.2}, single pass {single:.2}, metamers {metamers:.2}");
-    assert!(originals > 0.95 && single > 0.8, "{told}");
-    assert!(metamers <= 0.65, "{told}");
+    assert!(originals > 0.95 && single > 0.8, "{message}");
+    assert!(metamers <= 0.65, "{message}");
     // The pairs that matter: the reference, first, against each metamer.
-    let row = told["metamers"]["rows"][0].as_array().unwrap();
+    let row = message["metamers"]["rows"][0].as_array().unwrap();
     let expected = row[1..].iter().map(|cell| cell.as_f64().unwrap()).sum::<f64>() / 4.0;
-    assert!((number(&told["metamers"], "reference") - expected).abs() < 1e-12 && expected <= 0.7, "{told}");
+    assert!(
+        (number(&message["metamers"], "reference") - expected).abs() < 1e-12 && expected <= 0.7,
+        "{message}"
+    );
     for table in ["originals", "single_pass", "metamers"] {
-        let same = number(&told[table], "same");
+        let same = number(&message[table], "same");
         assert!((same - 0.5).abs() <= 0.09, "{table}: a surface against itself {same}");
-        let rows = told[table]["rows"].as_array().unwrap();
+        let rows = message[table]["rows"].as_array().unwrap();
         assert!(rows.len() == 5 && rows.iter().all(|row| row.as_array().unwrap().len() == 5));
     }
 }
@@ -315,12 +322,12 @@ fn a_photograph_is_a_rendered_stroke_in_two_commands() {
     for name in ["scene_x1", "scene_x2", "scene_x4", "scene"] {
         let file = format!("wall/{name}.toml");
         let (status, out, err) =
-            told(&asperity(scene.folder.path(), &["render", &file, "-o", "take", "--json"]));
+            message(&asperity(scene.folder.path(), &["render", &file, "-o", "take", "--json"]));
         assert_eq!((status, err.as_str()), (0, ""));
-        let told: Value = serde_json::from_str(&out).unwrap();
-        assert_eq!((number(&told, "quarantined"), number(&told, "dropped")), (0.0, 0.0));
-        assert!(number(&told, "audio_peak") > 0.0 && number(&told, "duration_s") > 1.9);
-        peaks.push(told["haptic_peak"][0].as_f64().unwrap());
+        let message: Value = serde_json::from_str(&out).unwrap();
+        assert_eq!((number(&message, "quarantined"), number(&message, "dropped")), (0.0, 0.0));
+        assert!(number(&message, "audio_peak") > 0.0 && number(&message, "duration_s") > 1.9);
+        peaks.push(message["haptic_peak"][0].as_f64().unwrap());
     }
     assert!(peaks[0] < peaks[1] && peaks[1] < peaks[2] && peaks[0] == peaks[3], "{peaks:?}");
 }

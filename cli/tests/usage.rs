@@ -3,7 +3,7 @@
 use crate::support;
 
 use std::path::Path;
-use support::{Scene, asperity, told};
+use support::{Scene, asperity, message};
 
 #[test]
 fn wrong_usage_is_one_line_and_status_2() {
@@ -25,7 +25,7 @@ fn wrong_usage_is_one_line_and_status_2() {
         &["render", "scene.toml", "-o", "out", "--colour"],
         &["demo", "extra"],
     ] {
-        let (status, out, err) = told(&asperity(scene.folder.path(), arguments));
+        let (status, out, err) = message(&asperity(scene.folder.path(), arguments));
         assert_eq!(status, 2, "{arguments:?}: {err}");
         assert_eq!(out, "", "{arguments:?}");
         assert_eq!(err.lines().count(), 1, "{arguments:?}: {err}");
@@ -42,17 +42,18 @@ fn what_is_no_number_is_answered_with_what_would_be_one() {
         (&["--block", "many"], "must be a whole number from 0 on"),
         (&["--seed", "99999999999999999999"], "must be a smaller number"),
     ] {
-        let (status, _, err) = told(&scene.render(arguments));
+        let (status, _, err) = message(&scene.render(arguments));
         assert!(status == 2 && err.contains(right), "{arguments:?}: {err}");
     }
-    let (status, _, err) = told(&asperity(Path::new("."), &["fit", "a.wav", "-o", "b", "--impulse", "hard"]));
+    let (status, _, err) =
+        message(&asperity(Path::new("."), &["fit", "a.wav", "-o", "b", "--impulse", "hard"]));
     assert!(status == 2 && err.contains("must be a number"), "{err}");
 }
 
 #[test]
 fn a_misspelt_choice_is_answered_with_the_choices() {
     let scene = Scene::new();
-    let (_, _, err) = told(&scene.render(&["--integrator", "euler"]));
+    let (_, _, err) = message(&scene.render(&["--integrator", "euler"]));
     for name in ["semi-implicit-euler", "exact-event", "energy-conserving"] {
         assert!(err.contains(name), "{err}");
     }
@@ -61,11 +62,11 @@ fn a_misspelt_choice_is_answered_with_the_choices() {
 #[test]
 fn help_and_version_go_to_stdout() {
     for argument in ["--help", "--version"] {
-        let (status, out, err) = told(&asperity(Path::new("."), &[argument]));
+        let (status, out, err) = message(&asperity(Path::new("."), &[argument]));
         assert_eq!((status, err.as_str()), (0, ""));
         assert!(out.contains("asperity"));
     }
-    let (_, out, _) = told(&asperity(Path::new("."), &["render", "--help"]));
+    let (_, out, _) = message(&asperity(Path::new("."), &["render", "--help"]));
     for option in
         ["--rate", "--block", "--seed", "--integrator", "--path", "--trace", "--plot", "--force", "--json"]
     {
@@ -82,7 +83,7 @@ fn a_number_below_0_is_answered_with_the_range() {
         (&["stroke", "wall.png", "-o", "x", "--force", "-2"], "must be a number above 0"),
         (&["texture", "compare", "a.png", "b.png", "--width-m", "-1"], "above 0"),
     ] {
-        let (status, _, err) = told(&asperity(folder.path(), arguments));
+        let (status, _, err) = message(&asperity(folder.path(), arguments));
         assert_eq!((status, err.lines().count()), (2, 1), "{err}");
         assert!(err.contains(part) && !err.contains("use '--"), "{err}");
     }

@@ -250,8 +250,8 @@ mod tests {
         let mut pool = Pool::new(vec![0, 0], 16).unwrap();
         let mut failing = jobs(8);
         failing[0].fails = true;
-        let told = catch_unwind(AssertUnwindSafe(|| run(&mut pool, failing, &mut 0)));
-        assert!(told.is_err());
+        let outcome = catch_unwind(AssertUnwindSafe(|| run(&mut pool, failing, &mut 0)));
+        assert!(outcome.is_err());
         drop(pool);
     }
 }

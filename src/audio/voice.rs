@@ -138,7 +138,7 @@ impl Voice {
     /// A report states what carries its tip, or that it is pressed, and whether it rolls.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip_force.carry(sample);
-        self.rolling.tell(sample);
+        self.rolling.report(sample);
     }
 
     /// Tests whether there is anything to render but rest.

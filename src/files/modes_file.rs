@@ -121,15 +121,15 @@ impl ModalModel {
             return Err(malformed(format!("format is \"{}\"", file.format)));
         }
         if let Some(name) = &file.shapes_beside {
-            let told = |what: String| malformed(format!("shapes_beside \"{name}\": {what}"));
+            let refused = |what: String| malformed(format!("shapes_beside \"{name}\": {what}"));
             if file.shapes.is_some() {
-                return Err(told("stands beside shapes; write one of them".into()));
+                return Err(refused("stands beside shapes; write one of them".into()));
             }
             if Path::new(name).components().count() != 1 {
-                return Err(told("must be the name of a file in the same folder".into()));
+                return Err(refused("must be the name of a file in the same folder".into()));
             }
-            let bytes = beside(name).map_err(told)?;
-            file.shapes = Some(shapes_from_bytes(&bytes, file.modes.len()).map_err(told)?);
+            let bytes = beside(name).map_err(refused)?;
+            file.shapes = Some(shapes_from_bytes(&bytes, file.modes.len()).map_err(refused)?);
         }
         match (&file.shapes, file.version) {
             (None, VERSION..=VERSION_WITH_BANDS) => {}

@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn shapes_that_do_not_fit_the_modes_are_refused_with_the_place() {
-        for (right, wrong, told) in [
+        for (right, wrong, expected) in [
             ("\"gains\":[0.5]", "\"gains\":[]", "0 gains"),
             ("[[0,1,2]]", "[[0,1,3]]", "triangles"),
             ("\"version\":2", "\"version\":1", "version 2"),
@@ -53,7 +53,7 @@ mod tests {
         ] {
             let text = TETRA.replace(right, wrong);
             let message = parse_shapes(&text).unwrap_err().to_string();
-            assert!(message.contains(told), "{message}");
+            assert!(message.contains(expected), "{message}");
             assert!(ModalModel::parse(&text).is_err());
         }
     }

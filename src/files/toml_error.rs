@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_slip_in_a_profile_names_line_key_and_remedy() {
-        for (text, told) in [
+        for (text, line_of) in [
             (
                 "label = \"x\"\nbnad_hz = [1, 2]",
                 "line 2: bnad_hz: unknown key; write band_hz; accepted here: band_hz, label",
@@ -76,7 +76,7 @@ mod tests {
         ] {
             let error = toml::from_str::<Profile>(text).unwrap_err();
             let line = FileError::toml(text, &error, "must be a profile").to_string();
-            assert!(line.starts_with(told), "{line}\nis not\n{told}");
+            assert!(line.starts_with(line_of), "{line}\nis not\n{line_of}");
         }
     }
 }

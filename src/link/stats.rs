@@ -191,10 +191,15 @@ mod tests {
         Counters::add(&counters.events, 7);
         counters.set_load(0.25);
         counters.bus_peak_bits[1].store(0.5f32.to_bits(), Relaxed);
-        let told = counters.snapshot();
-        let contacts =
-            [told.micro_collisions, told.shortened_collisions, told.quarantined, told.blows, told.events];
-        assert_eq!((contacts, told.load), ([22, 44, 66, 88, 7], 0.25));
-        assert_eq!((told.bus_levels.buses, &told.bus_levels.peaks[..2]), (2, &[0.0, 0.5][..]));
+        let counted = counters.snapshot();
+        let contacts = [
+            counted.micro_collisions,
+            counted.shortened_collisions,
+            counted.quarantined,
+            counted.blows,
+            counted.events,
+        ];
+        assert_eq!((contacts, counted.load), ([22, 44, 66, 88, 7], 0.25));
+        assert_eq!((counted.bus_levels.buses, &counted.bus_levels.peaks[..2]), (2, &[0.0, 0.5][..]));
     }
 }

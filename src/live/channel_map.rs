@@ -48,8 +48,8 @@ impl ChannelMap {
     /// When a part is unknown, a channel is no number below 256, or two signals share a channel.
     pub fn parse(text: &str) -> Result<Self, ChannelMapError> {
         // On one line, however many the text has.
-        let told = || text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let refuse = |problem| ChannelMapError { text: told(), problem };
+        let plain = || text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let refuse = |problem| ChannelMapError { text: plain(), problem };
         if text.trim() == "dualsense" {
             return Ok(Self::dualsense());
         }

@@ -10,26 +10,26 @@ const MOST_FULL_SCALE_M: f64 = 1.0;
 
 /// One line for each number in doubt.
 pub(super) fn doubts(actuators: &[ActuatorSettings], full_scale: impl Iterator<Item = f64>) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut found = Vec::new();
     for (channel, (settings, full_scale)) in actuators.iter().zip(full_scale).enumerate() {
         if matches!(settings.output, Quantity::Displacement | Quantity::Tangential) {
-            told.extend(long(&format!("actuator {channel}: full_scale"), full_scale, MOST_FULL_SCALE_M));
+            found.extend(long(&format!("actuator {channel}: full_scale"), full_scale, MOST_FULL_SCALE_M));
         }
         // The limits of the device that is equalised are reported once.
         let other = settings.limit.filter(|limit| settings.equalise.as_ref() != Some(limit));
         for (key, device) in [("equalise", settings.equalise), ("limit", other)] {
-            told.extend(
+            found.extend(
                 device.iter().flat_map(|device| of_device(&format!("actuator {channel}: {key}"), device)),
             );
         }
     }
-    told
+    found
 }
 
 fn of_device(at: &str, device: &DeviceProfile) -> Vec<String> {
     let DeviceProfile { resonance_hz, band_hz: [low, high], .. } = *device;
     let lengths = [("felt_at_resonance_m", device.felt_at_resonance_m), ("excursion_m", device.excursion_m)];
-    let mut told: Vec<String> = lengths
+    let mut found: Vec<String> = lengths
         .iter()
         .filter_map(|(key, metres)| long(&format!("{at}: {key}"), *metres, LONGEST_M))
         .collect();
@@ -40,11 +40,11 @@ fn of_device(at: &str, device: &DeviceProfile) -> Vec<String> {
         } else {
             "check its unit, hertz".to_owned()
         };
-        told.push(format!(
+        found.push(format!(
             "{at}: resonance_hz = {resonance_hz} is far outside its band_hz, {low} to {high}; {right}"
         ));
     }
-    told
+    found
 }
 
 /// A displacement beyond what is usual.
@@ -68,14 +68,14 @@ mod tests {
         }
         let slip = DeviceProfile { resonance_hz: 0.17, excursion_m: 13.0, ..DeviceProfile::LRA_170 };
         let settings = ActuatorSettings { limit: Some(slip), ..ActuatorSettings::default() };
-        let told = doubts(&[settings], [100.0].into_iter()).join("\n");
+        let found = doubts(&[settings], [100.0].into_iter()).join("\n");
         for part in [
             "actuator 0: full_scale = 100 is metres, beyond the usual 1; if these are micrometres, write 1e-4",
             "actuator 0: limit: excursion_m = 13 is metres",
             "write 1.3e-5",
             "actuator 0: limit: resonance_hz = 0.17 is far outside its band_hz, 60 to 400; if this is kilohertz, write 170",
         ] {
-            assert!(told.contains(part), "{told}\nlacks {part}");
+            assert!(found.contains(part), "{found}\nlacks {part}");
         }
         assert_eq!(doubts(&[ActuatorSettings::default()], [1.0].into_iter()), [""; 0]);
     }

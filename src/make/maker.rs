@@ -43,8 +43,8 @@ impl<'a> Loader<'a> {
             return Err(FileError::new(format!("body \"{}\": shape", entry.name), what, right));
         }
         if entry.radiation {
-            let told = |error| FileError::from_error(error).within(format!("body \"{}\"", entry.name));
-            model = model.radiating(&material).map_err(told)?;
+            let placed = |error| FileError::from_error(error).within(format!("body \"{}\"", entry.name));
+            model = model.radiating(&material).map_err(placed)?;
         }
         if !entry.diffuse {
             model.diffuse = None;

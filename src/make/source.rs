@@ -146,17 +146,17 @@ impl Ground<'_> {
 
     #[cfg(feature = "brownian")]
     fn brownian(self, entry: &Brownian) -> Result<Boxed, FileError> {
-        let told = |error| FileError::from_error(error).within("brownian");
+        let placed = |error| FileError::from_error(error).within("brownian");
         let mut design = BrownianDesign::new(entry.hurst, entry.rms_m, entry.seed.unwrap_or(self.maker.seed));
         let rendering = entry.force;
         if entry.graph {
             design.size = entry.cells.map_or(GRAPH_POINTS, |cells| cells as usize);
-            let heights_m = design.path().map_err(told)?;
+            let heights_m = design.path().map_err(placed)?;
             let spacing_m = self.extent.width_m / design.size as f64;
-            return Ok(Box::new(BrownianPath::new(&heights_m, spacing_m, rendering).map_err(told)?));
+            return Ok(Box::new(BrownianPath::new(&heights_m, spacing_m, rendering).map_err(placed)?));
         }
         design.size = entry.cells.map_or(design.size, |cells| cells as usize);
-        let relief = design.surface().map_err(told)?;
+        let relief = design.surface().map_err(placed)?;
         // The relief is isotropic and repeats in a square; a surface of another shape is cut from
         // it.
         let side_m = self.extent.width_m.max(self.extent.height_m);
@@ -164,7 +164,7 @@ impl Ground<'_> {
         let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(FileError::from_error)?);
         let Some(rendering) = rendering else { return Ok(map) };
         let (low, high) = relief.range();
-        let force = BrownianForce::surface(rendering, high - low).map_err(told)?;
+        let force = BrownianForce::surface(rendering, high - low).map_err(placed)?;
         Ok(Box::new(BrownianSurface::new(map, force)))
     }
 
@@ -186,11 +186,11 @@ impl Ground<'_> {
             );
             return Err(FileError::new("sand: cells", what, right));
         }
-        let told = |error| FileError::from_error(error).within("sand");
+        let placed = |error| FileError::from_error(error).within("sand");
         let Some(workers) = self.maker.workers else {
-            return SandSource::synchronous(&design, self.maker.seed).map_err(told);
+            return SandSource::synchronous(&design, self.maker.seed).map_err(placed);
         };
-        let (source, worker) = SandSource::threaded(&design, self.maker.seed).map_err(told)?;
+        let (source, worker) = SandSource::threaded(&design, self.maker.seed).map_err(placed)?;
         workers.borrow_mut().push(worker);
         Ok(source)
     }

@@ -262,25 +262,25 @@ impl ContactEvent {
     }
 
     /// Event at the place in the body of another one.
-    pub(crate) fn at_place_of(mut self, told: &Self) -> Self {
+    pub(crate) fn at_place_of(mut self, reported: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
-            Self::Begin { sample: told, .. } | Self::Moved { sample: told, .. },
-        ) = (&mut self, told)
+            Self::Begin { sample: reported, .. } | Self::Moved { sample: reported, .. },
+        ) = (&mut self, reported)
         {
-            sample.at_m = told.at_m;
+            sample.at_m = reported.at_m;
         }
         self
     }
 
     /// Event with the velocity of another one, beyond what the models reach too.
-    pub(crate) fn with_velocity_of(mut self, told: &Self) -> Self {
+    pub(crate) fn with_velocity_of(mut self, reported: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
-            Self::Begin { sample: told, .. } | Self::Moved { sample: told, .. },
-        ) = (&mut self, told)
+            Self::Begin { sample: reported, .. } | Self::Moved { sample: reported, .. },
+        ) = (&mut self, reported)
         {
-            sample.velocity_m_s = told.velocity_m_s.or(sample.velocity_m_s);
+            sample.velocity_m_s = reported.velocity_m_s.or(sample.velocity_m_s);
         }
         self
     }

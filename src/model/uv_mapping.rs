@@ -125,11 +125,11 @@ mod tests {
         for about in [0.1f64, 1.0, 2.5, -2.0] {
             let outward = DVec3::new(about.sin(), 0.0, about.cos());
             let (place, east) = (0.3 * outward + 0.4 * DVec3::Y, DVec3::new(about.cos(), 0.0, -about.sin()));
-            let (uv, told) = step(barrel, place, outward, 1e-4 * east);
+            let (uv, along) = step(barrel, place, outward, 1e-4 * east);
             assert!((uv[0] - 1e-4 / 0.2).abs() < 1e-8 && uv[1].abs() < 1e-9, "{about}: {uv:?}");
-            assert!((told[0] - 1e-4).abs() < 1e-9 && told[1].abs() < 1e-12, "{told:?}");
-            let (uv, told) = step(barrel, place, outward, 1e-4 * DVec3::NEG_Y);
-            assert!((uv[1] - 1e-4 / 0.5).abs() < 1e-9 && (told[1] - 1e-4).abs() < 1e-12, "{uv:?} {told:?}");
+            assert!((along[0] - 1e-4).abs() < 1e-9 && along[1].abs() < 1e-12, "{along:?}");
+            let (uv, along) = step(barrel, place, outward, 1e-4 * DVec3::NEG_Y);
+            assert!((uv[1] - 1e-4 / 0.5).abs() < 1e-9 && (along[1] - 1e-4).abs() < 1e-12, "{uv:?} {along:?}");
         }
         assert_eq!(barrel.at([0.1, 0.4, 0.0], [0.0, 1.0, 0.0]), by_normal([0.2, 0.5]));
     }
@@ -140,12 +140,12 @@ mod tests {
         for (about, theta) in [(0.3f64, 1.57f64), (-2.0, 0.9), (3.0, 2.0)] {
             let outward = DVec3::new(about.sin() * theta.sin(), theta.cos(), about.cos() * theta.sin());
             let east = DVec3::new(about.cos(), 0.0, -about.sin());
-            let (uv, told) = step(globe, 0.5 * outward, outward, 1e-4 * east.cross(outward));
+            let (uv, along) = step(globe, 0.5 * outward, outward, 1e-4 * east.cross(outward));
             assert!((uv[1] - 1e-4 / 0.25).abs() < 1e-7 && uv[0].abs() < 1e-8, "{uv:?}");
-            assert!((told[1] - 1e-4).abs() < 1e-9, "{told:?}");
-            let (uv, told) = step(globe, 0.5 * outward, outward, 1e-4 * east);
+            assert!((along[1] - 1e-4).abs() < 1e-9, "{along:?}");
+            let (uv, along) = step(globe, 0.5 * outward, outward, 1e-4 * east);
             assert!((uv[0] * theta.sin() - 1e-4 / 0.25).abs() < 1e-6, "{uv:?}");
-            assert!((told[0] - 1e-4).abs() < 1e-9, "{told:?}");
+            assert!((along[0] - 1e-4).abs() < 1e-9, "{along:?}");
         }
     }
 

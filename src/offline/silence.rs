@@ -42,21 +42,21 @@ impl Rendered<'_> {
         let own =
             |reason: &&SilenceReason| matches!(reason, SilenceReason::Held { count } if *count <= still);
         let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0 && !own(reason));
-        let mut told: Vec<String> = lost.map(|reason| singular(self.in_words(reason))).collect();
-        told.extend(first_s.map(|t| {
+        let mut sentences: Vec<String> = lost.map(|reason| singular(self.in_words(reason))).collect();
+        sentences.extend(first_s.map(|t| {
             singular(format!(
                 "{still} impacts were silent for their speed_m_s of 0 or below, the first at t = {t} s; write the speed of \
                  approach before the blow, not after it"
             ))
         }));
-        told
+        sentences
     }
 
     /// Buses and channels that hold nothing: one line each, with its own reason.
     #[must_use]
     pub fn silences(&self) -> Vec<String> {
         let (audio, haptic) = (self.silent_buses(), self.silent_channels());
-        let mut told = Vec::new();
+        let mut sentences = Vec::new();
         match audio.as_slice() {
             all if all.len() == self.render.audio.len() => {
                 let peak = self.render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max);
@@ -66,9 +66,9 @@ impl Rendered<'_> {
                     self.each(all, |bus| self.unheard(bus))
                 };
                 let is = if peak > FAINT { "faint" } else { "silence" };
-                told.push(format!("the audio is {is} (peak {peak:.1e}): {}", why.join("; ")));
+                sentences.push(format!("the audio is {is} (peak {peak:.1e}): {}", why.join("; ")));
             }
-            some => told.extend(some.iter().map(|bus| {
+            some => sentences.extend(some.iter().map(|bus| {
                 let name = self.file.audio.get(*bus).and_then(|bus| bus.name.clone()).unwrap_or_default();
                 format!("audio bus \"{name}\" is silence: {}", self.unheard(*bus))
             })),
@@ -76,21 +76,21 @@ impl Rendered<'_> {
         match haptic.as_slice() {
             all if all.len() == self.render.haptic.len() => {
                 let why = self.each(all, |channel| self.unfelt(channel));
-                told.push(format!("every haptic channel is silence: {}", why.join("; ")));
+                sentences.push(format!("every haptic channel is silence: {}", why.join("; ")));
             }
-            some => told
+            some => sentences
                 .extend(some.iter().map(|channel| {
                     format!("haptic channel {channel} is silence: {}", self.unfelt(*channel))
                 })),
         }
-        told
+        sentences
     }
 
     /// The reasons of several outputs, each once.
     fn each(&self, outputs: &[usize], why: impl Fn(usize) -> String) -> Vec<String> {
-        let mut told: Vec<String> = outputs.iter().map(|output| why(*output)).collect();
-        told.dedup();
-        told
+        let mut sentences: Vec<String> = outputs.iter().map(|output| why(*output)).collect();
+        sentences.dedup();
+        sentences
     }
 
     fn silent_buses(&self) -> Vec<usize> {
@@ -291,9 +291,9 @@ impl Rendered<'_> {
 }
 
 /// A line that counts something, as it is said of one.
-fn singular(told: String) -> String {
-    let one = told.strip_prefix("1 ").and_then(|rest| rest.split_once(' '));
-    let Some((noun, rest)) = one else { return told };
+fn singular(sentences: String) -> String {
+    let one = sentences.strip_prefix("1 ").and_then(|rest| rest.split_once(' '));
+    let Some((noun, rest)) = one else { return sentences };
     let rest = [
         ("collisions ", "collision "),
         ("changes ", "change "),

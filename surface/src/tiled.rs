@@ -349,8 +349,8 @@ mod tests {
             assert!(step(&heights) < 3.0 * step(&plain) + 1e-9, "{}: a seam", material.name());
             for (i, slope) in slopes.iter().enumerate().skip(1).take(19_998) {
                 let measured = (heights[i + 1] - heights[i - 1]) / 4e-6;
-                let told = 0.8 * slope[0] + 0.6 * slope[1];
-                assert!((measured - told).abs() < 1e-2 * (1.0 + rms / 1e-6), "{}", material.name());
+                let expected = 0.8 * slope[0] + 0.6 * slope[1];
+                assert!((measured - expected).abs() < 1e-2 * (1.0 + rms / 1e-6), "{}", material.name());
             }
         }
     }

@@ -130,9 +130,9 @@ mod tests {
             for depth_m in rubbish {
                 for v in rubbish {
                     for x in rubbish {
-                        let told =
+                        let forces =
                             [law.answer_n(depth_m, [v, 0.1]), law.answer_at_n([x, 0.05], depth_m, [0.1, v])];
-                        for force_n in told {
+                        for force_n in forces {
                             assert!(force_n.iter().all(|f| f.is_finite()), "{depth_m} {v} {x}: {force_n:?}");
                             let size_n = libm::hypot(libm::hypot(force_n[0], force_n[1]), force_n[2]);
                             assert!(!matches!(law, TipLaw::Sand(_)) || size_n <= 20.0 + 1e-9, "{size_n}");

@@ -157,7 +157,7 @@ pub unsafe extern "C" fn asp_bus_peaks(scene: *mut asp_scene, peaks: *mut f32, c
 /// nothing does. `size` is the room in `reasons`, bytes; what does not fit is cut.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
-    told(scene, reasons, size, |scene| scene.why_silent().iter().map(ToString::to_string).collect())
+    written(scene, reasons, size, |scene| scene.why_silent().iter().map(ToString::to_string).collect())
 }
 
 /// Bodies and surfaces that leave more than full scale holds, by how much, and what to turn: a line
@@ -165,11 +165,11 @@ pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_c
 /// not known yet. `size` is the room in `reasons`, bytes; what does not fit is cut. (Since 0.1.4.)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_why_clipped(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
-    told(scene, reasons, size, |scene| scene.why_clipped().iter().map(ToString::to_string).collect())
+    written(scene, reasons, size, |scene| scene.why_clipped().iter().map(ToString::to_string).collect())
 }
 
 /// Copies reasons, a line each.
-fn told(
+fn written(
     scene: *mut asp_scene,
     reasons: *mut c_char,
     size: u32,

@@ -96,13 +96,13 @@ pub fn from_normals<'py>(
     let [red, green, blue] = [raster(&red)?, raster(&green)?, raster(&blue)?];
     let options = NormalMapOptions { green: way, derivative, keep_tilt, ..NormalMapOptions::default() };
     let found = py.detach(|| heights_from_normals(&red, &green, &blue, &options)).map_err(refused)?;
-    let told = PyDict::new(py);
-    told.set_item("green", if found.green == Green::DirectX { "directx" } else { "opengl" })?;
-    told.set_item("green_is_certain", found.green_is_certain)?;
-    told.set_item("derivative_is_certain", found.derivative_is_certain)?;
-    told.set_item("tileable", found.tileable)?;
-    told.set_item("curl", found.curl)?;
-    Ok((array(py, found.height_px)?, told))
+    let findings = PyDict::new(py);
+    findings.set_item("green", if found.green == Green::DirectX { "directx" } else { "opengl" })?;
+    findings.set_item("green_is_certain", found.green_is_certain)?;
+    findings.set_item("derivative_is_certain", found.derivative_is_certain)?;
+    findings.set_item("tileable", found.tileable)?;
+    findings.set_item("curl", found.curl)?;
+    Ok((array(py, found.height_px)?, findings))
 }
 
 /// A surface that looks like one and feels like another, in the second's unit of height.
@@ -124,11 +124,11 @@ pub fn metamer<'py>(
     let made = py
         .detach(|| pulse.run(|tell| asperity_pictures::metamer::metamer(&look, &feel, &options, tell)))?
         .map_err(refused)?;
-    let told = PyDict::new(py);
-    told.set_item("mean_before", made.before.mean)?;
-    told.set_item("mean_after", made.after.mean)?;
-    told.set_item("heights_after", made.after.heights)?;
-    told.set_item("tileable", made.tileable)?;
-    told.set_item("borrowed", made.borrowed)?;
-    Ok((array(py, made.image)?, told))
+    let findings = PyDict::new(py);
+    findings.set_item("mean_before", made.before.mean)?;
+    findings.set_item("mean_after", made.after.mean)?;
+    findings.set_item("heights_after", made.after.heights)?;
+    findings.set_item("tileable", made.tileable)?;
+    findings.set_item("borrowed", made.borrowed)?;
+    Ok((array(py, made.image)?, findings))
 }

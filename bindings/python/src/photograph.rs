@@ -63,9 +63,9 @@ pub fn from_photo<'py>(
     let pulse = Pulse::new(progress);
     let surface =
         py.detach(|| pulse.run(|tell| surface_from_photo(&picture, &options, tell)))?.map_err(refused)?;
-    let told = told(py, &surface, options.texel_m, reduced_by)?;
+    let report = report(py, &surface, options.texel_m, reduced_by)?;
     let heights_m = surface.displacement.map(|grey| grey * surface.relief_m);
-    Ok((array(py, heights_m)?, array(py, surface.roughness)?, told))
+    Ok((array(py, heights_m)?, array(py, surface.roughness)?, report))
 }
 
 fn method_of(name: &str) -> PyResult<Method> {
@@ -75,7 +75,7 @@ fn method_of(name: &str) -> PyResult<Method> {
     })
 }
 
-fn told<'py>(
+fn report<'py>(
     py: Python<'py>,
     surface: &PhotoSurface,
     texel_m: f64,
@@ -93,24 +93,24 @@ fn told<'py>(
         _ if surface.shape.method == Method::DarkIsDeep => "bright-is-high",
         _ => "light",
     };
-    let told = PyDict::new(py);
-    told.set_item("texel_m", texel_m)?;
-    told.set_item("reduced_by", reduced_by)?;
-    told.set_item("relief_m", surface.relief_m)?;
-    told.set_item("micro_relief_m", surface.micro_relief_m)?;
-    told.set_item("method", method)?;
-    told.set_item("sign", sign)?;
-    told.set_item("sign_confidence", surface.sign.confidence)?;
-    told.set_item("light", surface.shape.light.map(|light| light.direction()))?;
-    told.set_item("light_is_estimated", surface.light_was_found)?;
-    told.set_item("fractal_dimension", surface.dimension)?;
-    told.set_item("roughness", surface.roughness.mean())?;
+    let report = PyDict::new(py);
+    report.set_item("texel_m", texel_m)?;
+    report.set_item("reduced_by", reduced_by)?;
+    report.set_item("relief_m", surface.relief_m)?;
+    report.set_item("micro_relief_m", surface.micro_relief_m)?;
+    report.set_item("method", method)?;
+    report.set_item("sign", sign)?;
+    report.set_item("sign_confidence", surface.sign.confidence)?;
+    report.set_item("light", surface.shape.light.map(|light| light.direction()))?;
+    report.set_item("light_is_estimated", surface.light_was_found)?;
+    report.set_item("fractal_dimension", surface.dimension)?;
+    report.set_item("roughness", surface.roughness.mean())?;
     let repetition = surface.repetition.as_ref();
-    told.set_item("lattice_px", repetition.map(|found| [found.lattice.t1_px, found.lattice.t2_px]))?;
-    told.set_item("wallpaper_group", repetition.map(|found| found.group.name()))?;
-    told.set_item("tileable", surface.tileable)?;
-    told.set_item("warnings", surface.doubts.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-    Ok(told)
+    report.set_item("lattice_px", repetition.map(|found| [found.lattice.t1_px, found.lattice.t2_px]))?;
+    report.set_item("wallpaper_group", repetition.map(|found| found.group.name()))?;
+    report.set_item("tileable", surface.tileable)?;
+    report.set_item("warnings", surface.doubts.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    Ok(report)
 }
 
 /// Share of strokes on each map that are put on the right one, and of metamers of all maps that are
@@ -164,17 +164,17 @@ pub fn compare<'py>(
         })
     })?;
     let (originals, metamers) = tables.map_err(refused)?;
-    let told = PyDict::new(py);
-    told.set_item("originals", in_python(py, &originals)?)?;
-    told.set_item("metamers", metamers.as_ref().map(|table| in_python(py, table)).transpose()?)?;
-    Ok(told)
+    let report = PyDict::new(py);
+    report.set_item("originals", in_python(py, &originals)?)?;
+    report.set_item("metamers", metamers.as_ref().map(|table| in_python(py, table)).transpose()?)?;
+    Ok(report)
 }
 
 fn in_python<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("rows", PyArray2::from_vec2(py, &table.rows).map_err(refused)?)?;
-    told.set_item("mean", table.mean)?;
-    told.set_item("reference", table.reference)?;
-    told.set_item("same", table.same)?;
-    Ok(told)
+    let report = PyDict::new(py);
+    report.set_item("rows", PyArray2::from_vec2(py, &table.rows).map_err(refused)?)?;
+    report.set_item("mean", table.mean)?;
+    report.set_item("reference", table.reference)?;
+    report.set_item("same", table.same)?;
+    Ok(report)
 }

@@ -85,7 +85,7 @@ pub fn modes<'py>(
     made.set_item("volume_m3", solved.volume_m3)?;
     made.set_item("mass_kg", solved.mass_kg)?;
     made.set_item("degrees_of_freedom", solved.degrees_of_freedom)?;
-    made.set_item("warnings", solved.told)?;
+    made.set_item("warnings", solved.remarks)?;
     Ok(made)
 }
 
@@ -96,8 +96,8 @@ fn preset(name: &str) -> PyResult<Material> {
 }
 
 fn elastic_of(preset: Option<Material>, [young, poisson, density]: [Option<f64>; 3]) -> PyResult<Elastic> {
-    let of = |name: &str, told: Option<f64>, own: Option<f64>| {
-        told.or(own).ok_or_else(|| {
+    let of = |name: &str, remarks: Option<f64>, own: Option<f64>| {
+        remarks.or(own).ok_or_else(|| {
             let names = Material::names();
             refused(format!("{name}: is missing; give it, or as material one of {names}"))
         })

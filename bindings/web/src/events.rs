@@ -81,7 +81,7 @@ pub extern "C" fn asp_report() -> u32 {
 struct Row([f64; EVENT_NUMBERS]);
 
 impl Row {
-    fn told(&self, at: usize) -> Option<f64> {
+    fn written(&self, at: usize) -> Option<f64> {
         Some(self.0[at]).filter(|number| !number.is_nan())
     }
 
@@ -93,7 +93,7 @@ impl Row {
 
     /// The thing of a list that a number names.
     fn thing<Id: Copy>(&self, at: usize, kind: &str, things: &[Id]) -> Result<Option<Id>, String> {
-        let Some(number) = self.told(at) else { return Ok(None) };
+        let Some(number) = self.written(at) else { return Ok(None) };
         // A number beyond the list, or none, is no index of it.
         let thing = things.get(number as usize).filter(|_| number >= 0.0 && number.fract() == 0.0);
         thing
@@ -115,7 +115,7 @@ impl Row {
     }
 
     fn actuator(&self) -> Result<Option<ChannelId>, String> {
-        self.told(ACTUATOR)
+        self.written(ACTUATOR)
             .map(|channel| match channel {
                 0.0..=65_535.0 => Ok(ChannelId(channel as u16)),
                 _ => Err(format!("actuator: {channel} is refused; must be a haptic channel from 0")),
@@ -127,7 +127,7 @@ impl Row {
         Ok(match self.0[KIND] {
             1.0 => ContactEvent::begin_with(self.contact()?, self.touching(session)?, self.sample()),
             2.0 => {
-                let emphasis = Emphasis { gain: self.told(GAIN), importance: self.told(IMPORTANCE) };
+                let emphasis = Emphasis { gain: self.written(GAIN), importance: self.written(IMPORTANCE) };
                 ContactEvent::moved_with(self.contact()?, self.sample(), emphasis)
             }
             3.0 => ContactEvent::end(self.contact()?),
@@ -141,17 +141,17 @@ impl Row {
     }
 
     fn sample(&self) -> ContactSample {
-        let (depth_m, force_n) = (self.told(DEPTH_M), self.0[NORMAL_FORCE_N]);
+        let (depth_m, force_n) = (self.written(DEPTH_M), self.0[NORMAL_FORCE_N]);
         ContactSample {
             uv: [self.0[UV], self.0[UV + 1]],
             velocity_m_s: self.several(VELOCITY_M_S),
             // Where a depth is told it counts, and the force beside it is nothing.
             normal_force_n: if depth_m.is_some() && force_n.is_nan() { 0.0 } else { force_n },
-            closing_m_s: self.told(CLOSING_M_S).unwrap_or(0.0),
+            closing_m_s: self.written(CLOSING_M_S).unwrap_or(0.0),
             at_m: self.several(AT_M),
             depth_m,
-            slip_m_s: self.told(SLIP_M_S),
-            roll_radius_m: self.told(ROLL_RADIUS_M),
+            slip_m_s: self.written(SLIP_M_S),
+            roll_radius_m: self.written(ROLL_RADIUS_M),
         }
     }
 
@@ -160,24 +160,24 @@ impl Row {
         touching.actuator = self.actuator()?;
         touching.probe = self.thing(PROBE, "probe", &session.probes)?;
         touching.holder = self.thing(HOLDER, "holder", &session.bodies)?;
-        Ok(touching.gain(self.told(GAIN).unwrap_or(1.0)).importance(self.told(IMPORTANCE).unwrap_or(1.0)))
+        Ok(touching.gain(self.written(GAIN).unwrap_or(1.0)).importance(self.written(IMPORTANCE).unwrap_or(1.0)))
     }
 
     fn impact(&self, session: &Session) -> Result<Impact, String> {
         let mut impact = Impact::on(self.needed(THING, "body", &session.bodies)?);
-        impact.speed_m_s = self.told(SPEED_M_S).unwrap_or(impact.speed_m_s);
-        impact.mass_kg = self.told(MASS_KG).unwrap_or(impact.mass_kg);
-        impact.radius_m = self.told(RADIUS_M).unwrap_or(impact.radius_m);
-        impact.restitution = self.told(RESTITUTION).unwrap_or(impact.restitution);
+        impact.speed_m_s = self.written(SPEED_M_S).unwrap_or(impact.speed_m_s);
+        impact.mass_kg = self.written(MASS_KG).unwrap_or(impact.mass_kg);
+        impact.radius_m = self.written(RADIUS_M).unwrap_or(impact.radius_m);
+        impact.restitution = self.written(RESTITUTION).unwrap_or(impact.restitution);
         let materials: Vec<Material> = Material::PRESETS.iter().map(|preset| preset.material).collect();
         impact.striker = self.thing(STRIKER, "striker", &materials)?.unwrap_or(impact.striker);
-        impact.position = self.told(POSITION).unwrap_or(0.0) as usize;
+        impact.position = self.written(POSITION).unwrap_or(0.0) as usize;
         impact.other = self.thing(OTHER, "other", &session.bodies)?;
         (impact.at_m, impact.direction) = (self.several(AT_M), self.several(DIRECTION));
         impact.actuator = self.actuator()?;
         impact.probe = self.thing(PROBE, "probe", &session.probes)?;
         impact.holder = self.thing(HOLDER, "holder", &session.bodies)?;
-        impact.gain = self.told(GAIN).unwrap_or(1.0);
+        impact.gain = self.written(GAIN).unwrap_or(1.0);
         Ok(impact)
     }
 }

@@ -41,8 +41,8 @@ pub extern "C" fn asp_open_picture(index: u32) -> u32 {
         let surface = *session.surfaces.get(index as usize).ok_or("there is no such surface")?;
         let port = session.scene.open_port(Picture { surface }).map_err(|error| error.to_string())?;
         let [columns, rows] = port.picture().size();
-        let told = [columns as f32, rows as f32, port.picture().cell_m() as f32];
-        answer(told.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>());
+        let read = [columns as f32, rows as f32, port.picture().cell_m() as f32];
+        answer(read.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>());
         session.ports.picture = Some(port);
         Ok(())
     }))

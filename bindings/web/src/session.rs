@@ -46,7 +46,7 @@ impl Session {
             };
             Engine::from_scene(&file, &overrides)
         })?;
-        answer(told(&file, &engine).to_string());
+        answer(reply(&file, &engine).to_string());
         let Engine { scene, renderer, names, .. } = engine;
         let mut session = Self {
             scene,
@@ -108,18 +108,18 @@ fn names(file: &SceneFile) -> serde_json::Value {
 }
 
 /// Description of an engine for JavaScript.
-fn told(file: &SceneFile, engine: &Engine) -> serde_json::Value {
-    let mut told = names(file);
-    told["sample_rate_hz"] = engine.renderer.sample_rate_hz().into();
-    told["latency_samples"] = engine.renderer.latency_samples().into();
-    told["buses"] = engine.renderer.audio_buses().into();
-    told["haptic_channels"] = engine.renderer.haptic_channels().into();
-    told["full_scale"] = engine.levels.full_scale.clone().into();
-    told["gain"] = engine.levels.gain.clone().into();
-    told["strike_gain"] = engine.levels.strike_gain.clone().into();
-    told["tail_s"] = file.tail_s.into();
-    told["materials"] = Material::PRESETS.iter().map(|preset| preset.name).collect();
-    told
+fn reply(file: &SceneFile, engine: &Engine) -> serde_json::Value {
+    let mut reply = names(file);
+    reply["sample_rate_hz"] = engine.renderer.sample_rate_hz().into();
+    reply["latency_samples"] = engine.renderer.latency_samples().into();
+    reply["buses"] = engine.renderer.audio_buses().into();
+    reply["haptic_channels"] = engine.renderer.haptic_channels().into();
+    reply["full_scale"] = engine.levels.full_scale.clone().into();
+    reply["gain"] = engine.levels.gain.clone().into();
+    reply["strike_gain"] = engine.levels.strike_gain.clone().into();
+    reply["tail_s"] = file.tail_s.into();
+    reply["materials"] = Material::PRESETS.iter().map(|preset| preset.name).collect();
+    reply
 }
 
 /// Opens a scene in the place of the one before. Inbox: the text of a scene file. `rate_hz` 0: the

@@ -214,8 +214,8 @@ mod tests {
 
     fn imported(json: &str, missing: &Missing) -> Result<Imported, String> {
         let json: Value = serde_json::from_str(json).unwrap();
-        let told = |error: CliError| error.to_string();
-        entry(&json, missing.entry.as_deref()).and_then(|entry| body(entry, missing)).map_err(told)
+        let remarks = |error: CliError| error.to_string();
+        entry(&json, missing.entry.as_deref()).and_then(|entry| body(entry, missing)).map_err(remarks)
     }
 
     #[test]

@@ -24,33 +24,33 @@ pub enum Input {
         rate_hz: f64,
         /// Times at which contacts begin and bodies are struck, s.
         strokes_s: Vec<f64>,
-        told: Vec<String>,
+        remarks: Vec<String>,
         source: String,
     },
     /// Envelopes.
-    Clip { clip: Clip, told: Vec<String> },
+    Clip { clip: Clip, remarks: Vec<String> },
 }
 
 /// Reads a file by the end of its name.
 pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliError> {
     let name = name_of(path);
     let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
-    let told = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
+    let remarks = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
     match ending.as_str() {
         "wav" | "aif" | "aiff" | "flac" | "ogg" | "oga" | "mp3" | "m4a" => sound(path, channel),
         "toml" => scene(path, channel),
         "haptic" => {
-            let read = haptic_file::parse(&text(path)?).map_err(told)?;
-            Ok(Input::Clip { clip: read.clip, told: read.told })
+            let read = haptic_file::parse(&text(path)?).map_err(remarks)?;
+            Ok(Input::Clip { clip: read.clip, remarks: read.remarks })
         }
         "ahap" => clip_of_ahap(path),
         "hjif" => {
-            let samples = hjif::rendered(&text(path)?, channel).map_err(told)?;
+            let samples = hjif::rendered(&text(path)?, channel).map_err(remarks)?;
             Ok(Input::Samples {
                 samples,
                 rate_hz: hjif::RATE_HZ,
                 strokes_s: Vec::new(),
-                told: Vec::new(),
+                remarks: Vec::new(),
                 source: name,
             })
         }
@@ -79,13 +79,13 @@ fn clip_of_ahap(path: &Path) -> Result<Input, CliError> {
     let main = text(path)?;
     if !beside.exists() {
         let read = ahap::parse(&main).map_err(|error| at(path, error))?;
-        return Ok(Input::Clip { clip: read.clip, told: read.told });
+        return Ok(Input::Clip { clip: read.clip, remarks: read.remarks });
     }
     crate::output::reads([&beside]);
     let read = ahap::parse_both(&main, &text(&beside)?).map_err(|error| at(path, error))?;
-    let mut told = read.told;
-    told.push(format!("strokes are from {}", name_of(&beside)));
-    Ok(Input::Clip { clip: read.clip, told })
+    let mut remarks = read.remarks;
+    remarks.push(format!("strokes are from {}", name_of(&beside)));
+    Ok(Input::Clip { clip: read.clip, remarks })
 }
 
 /// One channel of a sound file.
@@ -104,7 +104,7 @@ fn sound(path: &Path, channel: usize) -> Result<Input, CliError> {
         samples: sound.samples,
         rate_hz: sound.sample_rate_hz,
         strokes_s: Vec::new(),
-        told: if sound.truncated { vec![cut] } else { Vec::new() },
+        remarks: if sound.truncated { vec![cut] } else { Vec::new() },
         source: name,
     })
 }
@@ -137,7 +137,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
         samples,
         rate_hz: render.sample_rate_hz,
         strokes_s: strokes_s(&log, channel),
-        told: unread.iter().map(|place| read_past(place)).collect(),
+        remarks: unread.iter().map(|place| read_past(place)).collect(),
         source: name_of(path),
     })
 }

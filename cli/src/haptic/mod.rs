@@ -130,7 +130,7 @@ pub fn write_port(
     let port = Port::of(path)?;
     let device = Device::quest();
     let plain = PortOptions { device: "quest".to_owned(), points: None, normalise: false, sound: None };
-    let input = Input::Samples { samples, rate_hz, strokes_s, told: Vec::new(), source: name_of(path) };
+    let input = Input::Samples { samples, rate_hz, strokes_s, remarks: Vec::new(), source: name_of(path) };
     Ok(made(input, &port, path, &device, &plain, outputs)?.warnings)
 }
 
@@ -171,7 +171,7 @@ fn made(
     outputs: &mut Outputs,
 ) -> Result<Made, CliError> {
     match input {
-        Input::Clip { clip, told } => {
+        Input::Clip { clip, remarks } => {
             let left = oscillator::rendered(&clip, device, felt::RATE_HZ);
             let mut made = Made {
                 duration_s: clip.duration_s(),
@@ -181,7 +181,7 @@ fn made(
                 original: left.clone(),
                 left,
                 clip: None,
-                warnings: told,
+                warnings: remarks,
             };
             if port.is_waveform() {
                 port.write_samples(&mut made, felt::RATE_HZ, path, device, options, outputs)?;
@@ -191,14 +191,14 @@ fn made(
             }
             Ok(made)
         }
-        Input::Samples { samples, rate_hz, strokes_s, told, source } => {
+        Input::Samples { samples, rate_hz, strokes_s, remarks, source } => {
             if port.is_waveform() {
-                let mut made = whole(samples, rate_hz, told, options)
+                let mut made = whole(samples, rate_hz, remarks, options)
                     .map_err(|e| CliError::from_error(e.within(&source)))?;
                 port.write_samples(&mut made, felt::RATE_HZ, path, device, options, outputs)?;
                 return Ok(made);
             }
-            reduced(&samples, rate_hz, strokes_s, told, &source, port, path, device, options, outputs)
+            reduced(&samples, rate_hz, strokes_s, remarks, &source, port, path, device, options, outputs)
         }
     }
 }
@@ -207,7 +207,7 @@ fn made(
 fn whole(
     samples: Vec<f64>,
     rate_hz: f64,
-    told: Vec<String>,
+    remarks: Vec<String>,
     options: &PortOptions,
 ) -> Result<Made, asperity_ports::PortError> {
     let mut original = reduction::checked(&samples, rate_hz)?;
@@ -222,7 +222,7 @@ fn whole(
         left: original.clone(),
         original,
         clip: None,
-        warnings: told,
+        warnings: remarks,
     })
 }
 
@@ -231,7 +231,7 @@ fn reduced(
     samples: &[f64],
     rate_hz: f64,
     strokes_s: Vec<f64>,
-    told: Vec<String>,
+    remarks: Vec<String>,
     source: &str,
     port: &Port,
     path: &Path,
@@ -255,7 +255,7 @@ fn reduced(
     let reduction = reduction::reduce(samples, rate_hz, device, &settings, &mut |done| progress.reach(done))
         .map_err(|error| CliError::from_error(error.within(source)))?;
     drop(progress);
-    let mut warnings = told;
+    let mut warnings = remarks;
     let peak = reduction.clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);
     if peak < FAINT {
         warnings.push(format!(

@@ -56,12 +56,12 @@ impl Port {
         options: &PortOptions,
         outputs: &mut Outputs,
     ) -> Result<(), CliError> {
-        let told = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
+        let played = |error: asperity_ports::PortError| CliError::from_error(error.within(path.display()));
         match self {
-            Self::Haptic => outputs.write(path, haptic_file::write(clip).map_err(told)?.as_bytes()),
-            Self::Android => outputs.write(path, android::write(clip, device).map_err(told)?.as_bytes()),
+            Self::Haptic => outputs.write(path, haptic_file::write(clip).map_err(played)?.as_bytes()),
+            Self::Android => outputs.write(path, android::write(clip, device).map_err(played)?.as_bytes()),
             Self::Ahap => {
-                let files = ahap::write(clip, options.sound.as_deref()).map_err(told)?;
+                let files = ahap::write(clip, options.sound.as_deref()).map_err(played)?;
                 outputs.write(path, files.main.as_bytes())?;
                 files.transients.map_or(Ok(()), |text| outputs.write(&transients_of(path), text.as_bytes()))
             }

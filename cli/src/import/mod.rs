@@ -115,7 +115,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         bodies: scene.bodies.len(),
         surfaces: scene.surfaces.len(),
         unwrap: Unwraps::of(std::mem::take(&mut scene.unwrapped)),
-        warnings: std::mem::take(&mut scene.told),
+        warnings: std::mem::take(&mut scene.remarks),
         files: outputs.commit()?,
     };
     output::say_report(&report, options.json, || {
@@ -135,7 +135,7 @@ struct Scene {
     surfaces: Vec<(String, String)>,
     files: Vec<(String, Vec<u8>)>,
     unwrapped: Vec<Unwrap>,
-    told: Vec<String>,
+    remarks: Vec<String>,
 }
 
 impl Scene {
@@ -157,7 +157,7 @@ impl Scene {
             let right = format!(
                 "must have a node with {EXTENSION}, or a closed mesh or a normal texture that a node places"
             );
-            let why = scene.told.first().map_or(String::new(), |told| format!(" ({told})"));
+            let why = scene.remarks.first().map_or(String::new(), |remarks| format!(" ({remarks})"));
             let what = format!("hold nothing that sounds or is touched{why}");
             return Err(document.wrong("nodes", what, &right).into());
         }
@@ -165,8 +165,8 @@ impl Scene {
     }
 
     fn tell(&mut self, what: String) {
-        if !self.told.contains(&what) {
-            self.told.push(what);
+        if !self.remarks.contains(&what) {
+            self.remarks.push(what);
         }
     }
 
@@ -204,8 +204,8 @@ impl Scene {
         if let Some(model) = model {
             let scale = |column: usize| map[column].iter().map(|x| x * x).sum::<f64>().sqrt();
             if (0..3).any(|column| (scale(column) - 1.0).abs() > 1e-6) {
-                let told = "scales of nodes do not reach modes: they and their shapes are those of the model's own size";
-                self.tell(told.to_owned());
+                let remarks = "scales of nodes do not reach modes: they and their shapes are those of the model's own size";
+                self.tell(remarks.to_owned());
             }
             let text = bodies::modes(document, model, &format!("{at}.modalModel"), gain)?;
             let file = format!("{name}.modes.json");

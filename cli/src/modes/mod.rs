@@ -70,10 +70,10 @@ pub fn model(
     let elastic = Elastic { young_pa, poisson, density_kg_m3 }.checked().map_err(CliError::from_error)?;
     let wanted = plain::<Options>(mesh, mesh)?.wanted()?;
     let making = Making { material: elastic, size_m, unit_m: None, thickness_m: None, wanted };
-    let told =
+    let remarks =
         |error: asperity_shape::ShapeError| CliError::from_error(error.within(&mesh.display().to_string()));
     let shape = asperity_shape::load_part(mesh, None).map_err(CliError::from_error)?;
-    let mut body = asperity_shape::make(shape, &making, progress).map_err(told)?;
+    let mut body = asperity_shape::make(shape, &making, progress).map_err(remarks)?;
     let file = ModesFile::new(&mut body, &material.damping(), false, mesh).map_err(CliError::from_error)?;
     let text =
         serde_json::to_string(&file).map_err(|error| CliError::from_error(error).within(mesh.display()))?;
@@ -155,7 +155,7 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
         seconds: started.elapsed().as_secs_f64(),
         peak_mib: peak_mib(),
         unwrap,
-        warnings: body.told,
+        warnings: body.remarks,
     })
 }
 

@@ -3,8 +3,8 @@
 pub mod picture;
 mod recorder;
 mod report;
-pub mod told;
 mod view;
+pub mod warning;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
@@ -209,7 +209,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let full_scale = report.full_scale.clone();
     let rendered =
         Rendered { file: &file, log: &log, render: &render, full_scale: &full_scale, surfaces: &names };
-    report.warnings.extend(told::warnings(&rendered, &report));
+    report.warnings.extend(warning::warnings(&rendered, &report));
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
         let raster = &sand.picture.raster;
@@ -289,7 +289,7 @@ pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<S
     let full_scale = report.full_scale.clone();
     let rendered =
         Rendered { file: &file, log, render: &render, full_scale: &full_scale, surfaces: &surfaces };
-    let warnings = told::warnings(&rendered, &report);
+    let warnings = warning::warnings(&rendered, &report);
     Ok((render, warnings))
 }
 

@@ -149,10 +149,10 @@ pub fn make(
     options: &Options,
     folder: &Folder,
     inputs: &[PathBuf],
-    told: Told,
+    remarks: Told,
 ) -> Result<(), CliError> {
     check_outputs(sounds, folder, inputs)?;
-    let Told { assumed, warnings } = told;
+    let Told { assumed, warnings } = remarks;
     let mut report = Report { files: Vec::new(), gain: None, assumed, warnings };
     let mut progress = Progress::new("rendering", 2 * sounds.len() as u64);
     let mut trials = Vec::new();
@@ -263,9 +263,10 @@ fn write(
     folder: &Folder,
     warnings: &mut Vec<String>,
 ) -> Result<FileReport, CliError> {
-    let (mut render, told) = rendered(scene, sound, folder)?;
-    let told = told.into_iter().map(|line| format!("{}: {line}", sound.name));
-    warnings.extend(told.filter(|line| sound.is_felt || !line.contains("every haptic channel is silence")));
+    let (mut render, remarks) = rendered(scene, sound, folder)?;
+    let remarks = remarks.into_iter().map(|line| format!("{}: {line}", sound.name));
+    warnings
+        .extend(remarks.filter(|line| sound.is_felt || !line.contains("every haptic channel is silence")));
     let rate_hz = render.sample_rate_hz;
     let mut head = format!("# {}.wav\n", sound.name);
     if let Some(cut) = &sound.cut {

@@ -91,7 +91,7 @@ impl Ground {
         })?;
         let assumed =
             vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];
-        let told = Told { assumed, warnings: report.warnings().to_vec() };
+        let remarks = Told { assumed, warnings: report.warnings().to_vec() };
         let plain = Options { width_m: None, relief_m: None, material: None, ..options.clone() };
         let mut ground = Self::of_scene(&plain, &maps.join("scene.toml"), name)?;
         if let Some(body) = body {
@@ -100,7 +100,7 @@ impl Ground {
             ground = Self { inputs: ground.inputs, ..Self::of_table(&plain, scene, &maps, ground.name)? };
         }
         ground.inputs.push(options.what.clone());
-        Ok((ground, told))
+        Ok((ground, remarks))
     }
 
     fn of_map(options: &Options) -> Result<(Self, Told), CliError> {

@@ -78,13 +78,13 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         return Err(CliError::new("--loop", "stands beside a contact log", right));
     }
     let folder = Folder::open(&options.sounds.output)?;
-    let (ground, told) = Ground::of(options, &folder)?;
+    let (ground, remarks) = Ground::of(options, &folder)?;
     let sounds = sounds_of(options, &ground)?;
     let mut inputs = ground.inputs.clone();
     if let Way::Log(path) = &options.path {
         inputs.push(path.clone());
     }
-    sounds::make(&sounds, &options.sounds, &folder, &inputs, told)
+    sounds::make(&sounds, &options.sounds, &folder, &inputs, remarks)
 }
 
 fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError> {

@@ -197,7 +197,7 @@ fn right_of(answers: &[&Answer]) -> (usize, usize) {
 }
 
 /// Finite ends of an interval, null for the others.
-fn told(estimate: Estimate) -> Value {
+fn estimated(estimate: Estimate) -> Value {
     let end = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     json!({ "value": estimate.value, "ci95": estimate.ci95.map(end) })
 }
@@ -205,7 +205,7 @@ fn told(estimate: Estimate) -> Value {
 /// Share of right answers: Wilson's interval over answers, and the bootstrap's over participants.
 fn share(answers: &[&Answer]) -> Value {
     let (right, judged) = right_of(answers);
-    let mut value = told(statistics::share(right, judged));
+    let mut value = estimated(statistics::share(right, judged));
     let people = by(answers, |answer| &answer.participant);
     if people.len() >= SEVERAL {
         let shares: Vec<f64> = people
@@ -214,7 +214,7 @@ fn share(answers: &[&Answer]) -> Value {
             .filter(|(_, judged)| *judged > 0)
             .map(|(right, judged)| right as f64 / judged as f64)
             .collect();
-        value["ci95_participants"] = told(statistics::mean(&shares, 1))["ci95"].clone();
+        value["ci95_participants"] = estimated(statistics::mean(&shares, 1))["ci95"].clone();
     }
     value
 }
@@ -258,7 +258,7 @@ fn ratings(answers: &[&Answer]) -> Vec<Value> {
     for (scale, of) in by(answers, |answer| &answer.shown) {
         for (name, of) in by(&of, |answer| &answer.stimulus) {
             let people = means(&of);
-            let mut row = told(statistics::mean(&people, 1));
+            let mut row = estimated(statistics::mean(&people, 1));
             row["stimulus"] = json!(name);
             row["scale"] = json!(scale);
             row["n"] = json!(of.len());
@@ -297,7 +297,7 @@ fn trend(answers: &[&Answer]) -> Value {
         })
         .filter(|r| r.is_finite())
         .collect();
-    if correlations.is_empty() { Value::Null } else { told(statistics::mean(&correlations, 1)) }
+    if correlations.is_empty() { Value::Null } else { estimated(statistics::mean(&correlations, 1)) }
 }
 
 fn correlation(points: &[(f64, f64)]) -> f64 {
@@ -338,10 +338,10 @@ fn thresholds(answers: &[&Answer], options: &Options) -> Result<Value, CliError>
             Estimate { value: back(mean.value), ci95: mean.ci95.map(back) }
         }
     };
-    let mut value = told(all);
+    let mut value = estimated(all);
     value["at"] = json!(options.at);
     let row = |(who, stimulus, one): (&str, &str, Option<Estimate>)| {
-        let mut row = one.map_or_else(|| json!({ "value": null, "ci95": [null, null] }), told);
+        let mut row = one.map_or_else(|| json!({ "value": null, "ci95": [null, null] }), estimated);
         row["participant"] = json!(who);
         row["stimulus"] = json!(stimulus);
         row

@@ -76,7 +76,7 @@ fn page(study: &Path, folder: &Path, options: &Options) -> Result<(), CliError> 
     let mut outputs = Outputs::new();
     let (shown, loudest, warnings) = stimuli::write(&study, folder, &mut outputs)?;
     let id: String = Sha256::digest(&text).iter().take(6).map(|byte| format!("{byte:02x}")).collect();
-    let told = json!({
+    let embedded = json!({
         "id": id, "title": study.title, "protocol": study.protocol, "trials": study.trials, "seed": study.seed,
         "training": study.training, "attention": study.attention, "reversals": study.reversals,
         "consent": study.consent, "instructions": study.instructions, "question": study.question,
@@ -85,7 +85,7 @@ fn page(study: &Path, folder: &Path, options: &Options) -> Result<(), CliError> 
     let html = include_str!("page/study.html")
         .replace("@TITLE@", &study.title.replace('&', "&amp;").replace('<', "&lt;"))
         .replace("@SCRIPT@", include_str!("page/study.js"))
-        .replace("@STUDY@", &told.to_string().replace('<', "\\u003c"));
+        .replace("@STUDY@", &embedded.to_string().replace('<', "\\u003c"));
     let page = folder.join("index.html");
     outputs.write(&page, html.as_bytes())?;
     outputs.commit()?;

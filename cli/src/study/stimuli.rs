@@ -142,8 +142,8 @@ fn signals(stimulus: &Stimulus, senses: Senses, warnings: &mut Vec<String>) -> R
     if let Some(path) = &stimulus.scene {
         let file = SceneFile::load(path)?;
         let (log, _) = load_log(&file)?;
-        let (render, told) = render::in_memory(file, &log)?;
-        warnings.extend(told.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+        let (render, remarks) = render::in_memory(file, &log)?;
+        warnings.extend(remarks.into_iter().map(|warning| format!("{}: {warning}", path.display())));
         let signal = |channels: &[Vec<f32>]| {
             let samples = channels.first()?.clone();
             Some(Signal { rate_hz: render.sample_rate_hz, samples })

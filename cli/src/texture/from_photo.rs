@@ -281,8 +281,8 @@ mod tests {
         let assumed: Options = plain(&photo, &out).unwrap();
         let words = make(&assumed).unwrap().in_words(&assumed);
         assert!(words.starts_with("taken to be 15 mm wide (--width-m says another width);"), "{words}");
-        let told = Options { width_m: Some(0.5), ..plain(&photo, &out).unwrap() };
-        let words = make(&told).unwrap().in_words(&told);
+        let remarks = Options { width_m: Some(0.5), ..plain(&photo, &out).unwrap() };
+        let words = make(&remarks).unwrap().in_words(&remarks);
         assert!(words.starts_with("500 mm wide;"), "{words}");
     }
 

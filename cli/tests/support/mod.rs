@@ -14,7 +14,7 @@ pub fn asperity(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Status, stdout and stderr as text.
-pub fn told(output: &Output) -> (i32, String, String) {
+pub fn message(output: &Output) -> (i32, String, String) {
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
 }
@@ -22,7 +22,7 @@ pub fn told(output: &Output) -> (i32, String, String) {
 /// Checks that a run failed as it should: status 1, nothing on stdout, one `error:` line with all
 /// parts.
 pub fn assert_refused(output: &Output, parts: &[&str]) {
-    let (status, out, err) = told(output);
+    let (status, out, err) = message(output);
     assert_eq!(status, 1, "stdout: {out}\nstderr: {err}");
     assert_eq!(out, "");
     assert_eq!(err.lines().count(), 1, "{err}");
@@ -95,7 +95,7 @@ impl Scene {
     pub fn report(&self, more: &[&str]) -> serde_json::Value {
         let mut arguments = vec!["--json"];
         arguments.extend(more);
-        let (status, out, err) = told(&self.render(&arguments));
+        let (status, out, err) = message(&self.render(&arguments));
         assert_eq!((status, err.as_str()), (0, ""));
         serde_json::from_str(&out).unwrap()
     }

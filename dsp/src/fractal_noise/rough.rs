@@ -62,9 +62,9 @@ impl<const W: usize> Even<W> {
         roughness: f32,
     ) {
         let lanes = v.splat(roughness);
-        let (within, told) = (v.first(within_0_1(v, lanes)), gains(v, lanes));
-        (self.roughness, self.tail_boost) = (roughness, v.first(told.tail_boost));
-        let (mut gain, coarser) = (v.first(told.finest), v.first(told.coarser));
+        let (within, found) = (v.first(within_0_1(v, lanes)), gains(v, lanes));
+        (self.roughness, self.tail_boost) = (roughness, v.first(found.tail_boost));
+        let (mut gain, coarser) = (v.first(found.finest), v.first(found.coarser));
         for gains in self.gains.iter_mut().rev() {
             *gains = gain;
             gain *= coarser;

@@ -176,8 +176,8 @@ mod tests {
                         let uv = |i: usize| pair[i].1.uv[axis];
                         assert!((MARGIN - 1e-12..=1.0 - MARGIN + 1e-12).contains(&uv(0)), "{}", uv(0));
                         let moved = (uv(1) - uv(0)) * SIZE_M[axis] / (pair[1].0 - pair[0].0);
-                        let told = pair.iter().map(|(_, sample)| sample.velocity_m_s.unwrap()[axis]);
-                        let mean = told.sum::<f64>() / 2.0;
+                        let reported = pair.iter().map(|(_, sample)| sample.velocity_m_s.unwrap()[axis]);
+                        let mean = reported.sum::<f64>() / 2.0;
                         // Where the finger turns round at an edge a mean of two velocities is none
                         // of them.
                         if (moved - mean).abs() > 2e-3 {

@@ -220,12 +220,13 @@ fn a_refused_specification_leaves_no_folder_and_takes_none_away() {
 fn a_part_without_a_stroke_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let one = SPEC.replace("{ solid = \"granite\" }, ", "");
-    let told = set(&folder, &one, "one").unwrap().empty_parts().unwrap();
+    let message = set(&folder, &one, "one").unwrap().empty_parts().unwrap();
     assert!(
-        told.starts_with("no stroke belongs to train and test") || told.contains("no stroke belongs to"),
-        "{told}"
+        message.starts_with("no stroke belongs to train and test")
+            || message.contains("no stroke belongs to"),
+        "{message}"
     );
-    assert!(told.contains("there are 1 surfaces") && told.contains("by = \"stroke\""), "{told}");
+    assert!(message.contains("there are 1 surfaces") && message.contains("by = \"stroke\""), "{message}");
     let by_stroke = format!("{one}[split]\nby = \"stroke\"\ntrain = 0.5\nvalidation = 0.0\ntest = 0.5\n");
     assert_eq!(set(&folder, &by_stroke, "two").unwrap().empty_parts(), None);
 }
@@ -361,7 +362,7 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
         impl asperity::Tap for Told {
             fn contact(&mut self, block: &asperity::ContactBlock<'_>) {
                 let Self(rows, samples, force) = self;
-                force.close(block.first_sample, |row| rows.extend(told(row)));
+                force.close(block.first_sample, |row| rows.extend(message(row)));
                 force.add(block);
                 for (index, sample) in block.contact_samples.iter().enumerate() {
                     let [u, v] = block.uv[index];
@@ -370,7 +371,7 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
                 }
             }
         }
-        fn told(row: asperity::live::ports::ForceRow) -> Option<[f64; 4]> {
+        fn message(row: asperity::live::ports::ForceRow) -> Option<[f64; 4]> {
             let [x, y, z] = row.force_n;
             let of_contact = matches!(row.of, asperity::live::ports::Of::Contact(_));
             of_contact.then_some([row.tick as f64 / 500.0, x, y, z])
@@ -379,7 +380,7 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
             Told(Vec::new(), Vec::new(), asperity::live::ports::ForceRows::new(500.0, 22_050.0, 64));
         render(&stroke.scene, &mut tap);
         let Told(mut rows, samples, mut force) = tap;
-        force.close(u64::MAX, |row| rows.extend(told(row)));
+        force.close(u64::MAX, |row| rows.extend(message(row)));
         let table = record.samples.force.as_ref().unwrap();
         assert!(table[0].len() >= 45 && table.iter().all(|column| column.len() == table[0].len()));
         for (row, wanted) in rows.iter().take(table[0].len()).enumerate() {
@@ -500,12 +501,12 @@ fn choices_and_ranges_are_tried_before_anything_is_rendered() {
 
 #[test]
 fn grams_and_centimetres_are_told_with_what_was_meant() {
-    let told = |from: &str, to: &str| {
+    let message = |from: &str, to: &str| {
         let folder = tempfile::tempdir().unwrap();
         let text = SPEC.replace(from, to);
         set(&folder, &text, "set").unwrap().remarks()
     };
-    assert_eq!(told("seed = 11", "seed = 12"), [""; 0]);
+    assert_eq!(message("seed = 11", "seed = 12"), [""; 0]);
     let force = "{ normal = [0.6, 0.2], within = [0.1, 2] }";
     for (from, to, doubt) in [
         (
@@ -529,6 +530,6 @@ fn grams_and_centimetres_are_told_with_what_was_meant() {
             "g.surface.width_m is 80, beyond the usual 5; if these are millimetres, write 0.08",
         ),
     ] {
-        assert_eq!(told(from, to), [doubt]);
+        assert_eq!(message(from, to), [doubt]);
     }
 }

@@ -282,8 +282,8 @@ mod tests {
     #[test]
     fn a_coarse_grid_differs_from_a_fine_one_and_not_from_itself() {
         let coarse = felt(16.0, 1.0, 1);
-        let told = right_answers(&coarse, &felt(8.0, 1.0, 2));
-        assert!(told > 0.95, "{told}");
+        let share = right_answers(&coarse, &felt(8.0, 1.0, 2));
+        assert!(share > 0.95, "{share}");
         let same = right_answers(&coarse, &felt(16.0, 1.0, 3));
         assert!((same - 0.5).abs() < 0.15, "{same}");
     }
@@ -293,7 +293,7 @@ mod tests {
         // Across a grating at an angle a finger meets cos θ as many ridges a second. A stroke on
         // the fine one (half the period) beyond 60° is one on the coarse one; the best judge is
         // right in 1/2 + 1/2 · 60°/90° = 5/6.
-        let told = right_answers(&felt(16.0, 0.0, 1), &felt(8.0, 0.0, 2));
-        assert!((told - 5.0 / 6.0).abs() < 0.08, "{told}");
+        let share = right_answers(&felt(16.0, 0.0, 1), &felt(8.0, 0.0, 2));
+        assert!((share - 5.0 / 6.0).abs() < 0.08, "{share}");
     }
 }

@@ -17,7 +17,7 @@ use asperity_surface::solid_noise::{SolidCut, SolidNoise};
 /// Templates and trials a class; people had 24 trials a plate and 16 a material.
 const COUNT: u64 = 16;
 
-fn told(tables: &[Table], names: &[&str]) {
+fn message(tables: &[Table], names: &[&str]) {
     println!("observers {} {}", constants::constants_sha256(), second::constants_sha256());
     let chance = 1.0 / names.len() as f64;
     let se = (chance * (1.0 - chance) / (names.len() as f64 * COUNT as f64)).sqrt();
@@ -68,7 +68,7 @@ fn a_rhythm_of_the_grounds_period_is_heard_not_steady_noise() {
 #[test]
 fn both_observers_say_what_they_say_of_the_six_plates() {
     let [known, asked] = lots(&six_plates(), COUNT, true).unwrap();
-    told(&judge(&known, &asked, &CONDITIONS), &PLATES);
+    message(&judge(&known, &asked, &CONDITIONS), &PLATES);
     let itself = against_itself(&known, &asked);
     println!("a plate against itself: {itself:?}");
     let se = (0.25 / (6.0 * COUNT as f64)).sqrt();
@@ -79,7 +79,7 @@ fn both_observers_say_what_they_say_of_the_six_plates() {
 fn both_observers_say_what_they_say_of_the_seven_materials() {
     let names = SolidMaterial::SEVEN.map(SolidMaterial::name);
     let [known, asked] = lots(&seven_materials(), COUNT, false).unwrap();
-    told(&judge(&known, &asked, &CONDITIONS[..1]), &names);
+    message(&judge(&known, &asked, &CONDITIONS[..1]), &names);
 }
 
 /// Four pieces each of materials, heights 0 to 1: solids, Brownian surfaces, reliefs.
@@ -136,9 +136,9 @@ fn other_pieces_of_a_material_and_its_metamers_rank_before_other_materials() {
     for (material, maps) in pieces.iter().enumerate() {
         let look = &pieces[(material + 1) % pieces.len()][0];
         let made = metamer(look, &maps[0], &MetamerOptions::default(), |_| ()).unwrap().image;
-        let told = told_apart(&made, &maps[0]);
-        println!("metamer of material {material}: told apart {told:.2}");
-        if told <= 0.65 {
+        let message = told_apart(&made, &maps[0]);
+        println!("metamer of material {material}: told apart {message:.2}");
+        if message <= 0.65 {
             all.push((material, impression(&made)));
         }
     }

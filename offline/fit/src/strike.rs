@@ -205,8 +205,8 @@ fn warn_of_recording(recording: &Recording, strike: &Strike, found: &Found, warn
 
 /// Beginning of free ringing as the user says, or the end of the clipping; `None` finds out.
 fn fixed_offset(recording: &Recording, found: &Found, options: &FitOptions) -> Option<usize> {
-    let told = options.start_offset_s.map(|offset| (offset * recording.sample_rate_hz).round() as usize);
-    let offset = told.or_else(|| clipped_offset(recording, found))?;
+    let given = options.start_offset_s.map(|offset| (offset * recording.sample_rate_hz).round() as usize);
+    let offset = given.or_else(|| clipped_offset(recording, found))?;
     Some(if offset + FEWEST_SAMPLES <= found.end - found.onset { offset } else { 0 })
 }
 

@@ -182,7 +182,7 @@ fn what_is_no_sweep_of_one_resonance_is_refused_with_the_reason() {
     let noise: Vec<f64> = good.drive.iter().map(|_| rng.normal()).collect();
     // A second resonance beside the first.
     let second = Made { resonance_hz: 1.3 * made.resonance_hz, ..made }.sweep(1);
-    for (told, needle) in [
+    for (message, needle) in [
         (with(&|sweep| sweep.acceleration_m_s2.clone_from(&noise)), ""),
         (with(&|sweep| sweep.drive.iter_mut().for_each(|u| *u *= 2.0)), "its drive reaches 1.6"),
         (with(&|sweep| sweep.drive.fill(0.0)), "its drive is silent"),
@@ -199,8 +199,8 @@ fn what_is_no_sweep_of_one_resonance_is_refused_with_the_reason() {
         // A stop: what is felt of it is no longer the drive's.
         (with(&|sweep| sweep.acceleration_m_s2.iter_mut().for_each(|a| *a += 0.02 * *a * a.abs())), ""),
     ] {
-        assert!(told.contains(needle) && told.contains("; "), "{told}");
-        println!("{told}");
+        assert!(message.contains(needle) && message.contains("; "), "{message}");
+        println!("{message}");
     }
     let above = Made { resonance_hz: 15.0, ..made };
     println!("{}", measure(&above.sweep(3)).unwrap_err());

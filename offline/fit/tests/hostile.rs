@@ -116,16 +116,16 @@ fn the_longer_ringing_of_two_strikes_is_fitted_by_default() {
         fit(&recording(samples.clone()), &options, &mut |_| {})
     };
     // Its strikes, the one that was taken first.
-    let told = |fit: &Fit| {
+    let message = |fit: &Fit| {
         fit.warnings.iter().find_map(|w| match w {
             Warning::SecondStrike { taken, taken_s, others_s } => Some((*taken, *taken_s, others_s.clone())),
             _ => None,
         })
     };
     let (best, first) = (strike(None).unwrap(), strike(Some(1)).unwrap());
-    let (taken, at_s, others_s) = told(&best).unwrap();
+    let (taken, at_s, others_s) = message(&best).unwrap();
     assert!(taken == 2 && (at_s - 30_000.0 / RATE_HZ).abs() < 1e-3 && (others_s[0] - 0.1).abs() < 1e-3);
-    let (taken, at_s, _) = told(&first).unwrap();
+    let (taken, at_s, _) = message(&first).unwrap();
     assert!(taken == 1 && (at_s - 0.1).abs() < 5e-4 && first.end_s < 30_000.0 / RATE_HZ);
     for fit in [&best, &first] {
         for mode in body() {

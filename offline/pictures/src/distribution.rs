@@ -227,12 +227,12 @@ mod tests {
         for (to, reference) in &sets[..4] {
             let wanted = Distribution::new(reference);
             for (of, values) in &sets {
-                let told = Distribution::on_the_bins_of(values, &wanted).distance(&wanted);
+                let stated = Distribution::on_the_bins_of(values, &wanted).distance(&wanted);
                 let exact = Histogram::new(values).distance(&Histogram::new(reference));
-                let error = (told - exact).abs() / wanted.deviation();
+                let error = (stated - exact).abs() / wanted.deviation();
                 assert!(
                     error < 2e-4 + 0.002 * exact / wanted.deviation(),
-                    "{of} to {to}: {told} for {exact}"
+                    "{of} to {to}: {stated} for {exact}"
                 );
             }
         }

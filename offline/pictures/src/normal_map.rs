@@ -122,7 +122,7 @@ pub fn heights_from_normals(
     let mut field = slopes_of_normals(red, green, blue, steps);
     let tileable = match options.borders {
         Borders::Detect => seams::tiles(&field),
-        told => told == Borders::Periodic,
+        given => given == Borders::Periodic,
     };
     if tileable || !options.keep_tilt {
         for slope in [&mut field.along_u, &mut field.along_v] {
@@ -216,7 +216,7 @@ fn which_green(spectrum: &mut SlopeSpectrum, wanted: Green) -> (Green, bool) {
     let (green, certain) = match wanted {
         Green::Detect if certain && down < up => (Green::DirectX, true),
         Green::Detect => (Green::OpenGl, certain),
-        told => (told, true),
+        given => (given, true),
     };
     if green != Green::DirectX {
         spectrum.turn_v();
@@ -226,8 +226,8 @@ fn which_green(spectrum: &mut SlopeSpectrum, wanted: Green) -> (Green, bool) {
 
 /// The derivative that was given, or the one that the slopes leave, or of those they do not tell
 /// apart the one that raises short waves the least.
-fn which_derivative(spectrum: &SlopeSpectrum, noise: f64, told: Option<Derivative>) -> (Derivative, bool) {
-    if let Some(derivative) = told {
+fn which_derivative(spectrum: &SlopeSpectrum, noise: f64, given: Option<Derivative>) -> (Derivative, bool) {
+    if let Some(derivative) = given {
         return (derivative, true);
     }
     let (possible, certain) = spectrum.possible_derivatives(noise);

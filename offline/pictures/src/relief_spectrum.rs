@@ -163,11 +163,11 @@ fn bands(heights_px: &Raster) -> Vec<[f64; 3]> {
 /// (ln A, α, σ²) of least squares; σ² is kept when it is given.
 fn fit(points: &[[f64; 3]], blur: Option<f64>) -> [f64; 3] {
     let n = points.len() as f64;
-    let told = blur.unwrap_or(0.0);
+    let given = blur.unwrap_or(0.0);
     let mean = |value: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(value).sum::<f64>() / n;
     let x = |p: &[f64; 3]| -p[0];
     let z = |p: &[f64; 3]| -p[1];
-    let y = |p: &[f64; 3]| p[2] + told * p[1];
+    let y = |p: &[f64; 3]| p[2] + given * p[1];
     let (mx, mz, my) = (mean(&x), mean(&z), mean(&y));
     let dot = |a: &dyn Fn(&[f64; 3]) -> f64, ma: f64, b: &dyn Fn(&[f64; 3]) -> f64, mb: f64| {
         points.iter().map(|p| (a(p) - ma) * (b(p) - mb)).sum::<f64>()
@@ -175,7 +175,7 @@ fn fit(points: &[[f64; 3]], blur: Option<f64>) -> [f64; 3] {
     let (xx, xz, zz) = (dot(&x, mx, &x, mx), dot(&x, mx, &z, mz), dot(&z, mz, &z, mz));
     let (xy, zy) = (dot(&x, mx, &y, my), dot(&z, mz, &y, my));
     let (exponent, square) = match blur {
-        Some(told) => (xy / xx, told),
+        Some(given) => (xy / xx, given),
         None => {
             let determinant = xx * zz - xz * xz;
             ((xy * zz - zy * xz) / determinant, (zy * xx - xy * xz) / determinant)
@@ -256,7 +256,7 @@ mod tests {
     fn micro_relief_is_the_rms_of_the_octave_at_one_millimetre() {
         // Texels of 0.25 mm: the fine octave is the one at 1 mm.
         let heights = relief(256, 2.0, 0.0, 4);
-        let told = ReliefSpectrum::of(&heights).unwrap().micro_relief_px(0.25e-3);
+        let given = ReliefSpectrum::of(&heights).unwrap().micro_relief_px(0.25e-3);
         let n = 256;
         let mut fft = Fft2::new(n, n);
         let mut spectrum = fft.spectrum(&heights.values);
@@ -268,7 +268,7 @@ mod tests {
         }
         let rows = fft.image(&mut spectrum);
         let rms = (rows.values.iter().map(|z| z * z).sum::<f64>() / (n * n) as f64).sqrt();
-        assert!((told / rms - 1.0).abs() < 0.15, "{told} and {rms}");
+        assert!((given / rms - 1.0).abs() < 0.15, "{given} and {rms}");
     }
 
     #[test]

@@ -231,8 +231,8 @@ mod tests {
             let mean_m = 1e-3 + heights.mean() - heights.range().0;
             let [far, near] = [0, h - 1].map(|y| heights.at(w - 1, y) - heights.at(0, y));
             let corners_m = if w.min(h) > 1 { (far - near) / 12.0 } else { 0.0 };
-            let told = block.size_m()[0] * block.size_m()[1] * mean_m + 4e-6 * corners_m;
-            assert!((volume_m3 / told - 1.0).abs() < 1e-5, "{w} × {h}: {volume_m3} {told}");
+            let expected = block.size_m()[0] * block.size_m()[1] * mean_m + 4e-6 * corners_m;
+            assert!((volume_m3 / expected - 1.0).abs() < 1e-5, "{w} × {h}: {volume_m3} {expected}");
         }
     }
 

@@ -100,8 +100,8 @@ fn surfaces_without_a_ground_fall_back_and_say_so() {
     assert_eq!(surface.shape.method, Method::DarkIsDeep);
     let said = |d: &Doubt| matches!(d, Doubt::Fallback(Fallback::FrontalLight(_)));
     assert!(surface.doubts.iter().any(said));
-    let told = PhotoOptions { method: Some(Method::FlatGround), ..Default::default() };
-    let refused = surface_from_photo(&rough, &told, |_| {}).unwrap_err();
+    let message = PhotoOptions { method: Some(Method::FlatGround), ..Default::default() };
+    let refused = surface_from_photo(&rough, &message, |_| {}).unwrap_err();
     assert_eq!((refused.field, refused.value), ("flat ground", 0.0));
 }
 

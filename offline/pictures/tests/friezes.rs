@@ -84,13 +84,13 @@ fn corrugated_sheets_have_their_profile_for_a_primitive() {
             });
             assert!(find_lattice(&sheet).is_none());
             let found = find_frieze(&sheet).unwrap();
-            let told = (found.t_px, found.confidence, found.group);
+            let message = (found.t_px, found.confidence, found.group);
             assert!(
                 found.stripes && off(&found, period, turn) < 0.1,
-                "{period}, {turn}, {sawtooth}: {told:?}"
+                "{period}, {turn}, {sawtooth}: {message:?}"
             );
             let group = if sawtooth { FriezeGroup::P11m } else { FriezeGroup::P2mm };
-            assert_eq!(found.group, group, "{period}, {turn}: {told:?}");
+            assert_eq!(found.group, group, "{period}, {turn}: {message:?}");
             let (low, high) = found.primitive.range();
             assert!((high - low - if sawtooth { 1.6 } else { 2.0 }).abs() < 0.25, "{low} to {high}");
         }

@@ -110,8 +110,8 @@ fn sizes_and_factors_do_what_they_say() {
     assert!((larger.relief_m / plain.relief_m - 2.0).abs() < 1e-12);
     let twice = made(&picture, PhotoOptions { exaggeration: 2.0, ..Default::default() });
     assert!((twice.relief_m / plain.relief_m - 2.0).abs() < 1e-12);
-    let told = made(&picture, PhotoOptions { relief_m: Some(1e-3), ..Default::default() });
-    assert_eq!((told.relief_m, &told.displacement), (1e-3, &plain.displacement));
+    let message = made(&picture, PhotoOptions { relief_m: Some(1e-3), ..Default::default() });
+    assert_eq!((message.relief_m, &message.displacement), (1e-3, &plain.displacement));
     let lit = made(&picture, PhotoOptions { light: Some(Light::ABOVE_LEFT), ..Default::default() });
     assert!(matches!(lit.shape.method, Method::Integrable(_)));
 }
@@ -197,8 +197,8 @@ fn frontal_light_gives_heights_and_a_reason() {
 #[test]
 fn no_light_is_reported_where_none_was_found() {
     assert!(!made(&ground(96), PhotoOptions::default()).light_was_found);
-    let told = PhotoOptions { light: Some(Light::ABOVE_LEFT), ..Default::default() };
-    assert!(!made(&ground(96), told).light_was_found);
+    let message = PhotoOptions { light: Some(Light::ABOVE_LEFT), ..Default::default() };
+    assert!(!made(&ground(96), message).light_was_found);
 }
 
 #[test]

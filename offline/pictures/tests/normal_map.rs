@@ -23,8 +23,12 @@ fn heights_of_8_bit_maps_are_within_six_thousandths() {
                 assert!(made.tileable, "{name}");
                 // A wave as long along u as along v does not tell how its slopes were taken,
                 // everything else does.
-                let told = if name == "bumps" { Derivative::ExactOrCentral } else { derivative };
-                assert_eq!((made.derivative, made.derivative_is_certain), (told, name != "bumps"), "{name}");
+                let message = if name == "bumps" { Derivative::ExactOrCentral } else { derivative };
+                assert_eq!(
+                    (made.derivative, made.derivative_is_certain),
+                    (message, name != "bumps"),
+                    "{name}"
+                );
                 // Where the bar is out of anybody's reach: tests/normal_map_limits.rs.
                 let out_of_reach = derivative == Derivative::Sobel && ["ridges", "bumps"].contains(&name);
                 assert!(out_of_reach || error < 0.006, "{name} {derivative:?} {green:?}: {error}");

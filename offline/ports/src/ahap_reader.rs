@@ -74,7 +74,7 @@ pub(crate) struct Pieces {
     strokes: Vec<(f64, Emphasis)>,
     intensity: Track,
     sharpness: Track,
-    told: Vec<String>,
+    remarks: Vec<String>,
 }
 
 fn number(of: &Value, key: &str, range: [f64; 2]) -> Result<f64, PortError> {
@@ -138,8 +138,8 @@ impl Pieces {
     }
 
     fn tell(&mut self, what: &str) {
-        if !self.told.iter().any(|told| told == what) {
-            self.told.push(what.to_owned());
+        if !self.remarks.iter().any(|remarks| remarks == what) {
+            self.remarks.push(what.to_owned());
         }
     }
 
@@ -227,7 +227,7 @@ impl Pieces {
             frequency.iter_mut().for_each(|p| p.time_s = p.time_s.clamp(first.time_s, last.time_s));
         }
         let clip = Clip { amplitude, frequency, ..Clip::default() };
-        Ok(Read { clip: clip.checked()?, told: self.told })
+        Ok(Read { clip: clip.checked()?, remarks: self.remarks })
     }
 
     /// Times at which the envelope bends: twice where it may jump.

@@ -78,7 +78,7 @@ pub struct Read {
     /// The clip.
     pub clip: Clip,
     /// Sentences for the user.
-    pub told: Vec<String>,
+    pub remarks: Vec<String>,
 }
 
 impl Clip {

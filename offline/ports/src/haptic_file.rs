@@ -67,12 +67,12 @@ pub fn parse(text: &str) -> Result<Read, PortError> {
     let count = frequency.len();
     let bounds = amplitude.first().map_or(0.0, |p| p.time_s)..=amplitude.last().map_or(0.0, |p| p.time_s);
     frequency.retain(|p| bounds.contains(&p.time_s));
-    let mut told = Vec::new();
+    let mut remarks = Vec::new();
     if frequency.len() < count {
         let lost = count - frequency.len();
-        told.push(format!("{lost} frequency points outside the amplitude envelope are left out"));
+        remarks.push(format!("{lost} frequency points outside the amplitude envelope are left out"));
     }
-    Ok(Read { clip: Clip { amplitude, frequency, about: file.metadata }.checked()?, told })
+    Ok(Read { clip: Clip { amplitude, frequency, about: file.metadata }.checked()?, remarks })
 }
 
 /// Writes a clip as version 1.0.

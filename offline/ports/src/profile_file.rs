@@ -47,14 +47,14 @@ mod tests {
     #[test]
     fn a_slip_in_a_profile_names_its_line_and_its_key() {
         let text = include_str!("../devices/quest.toml");
-        for (from, to, told) in [
+        for (from, to, remarks) in [
             ("band_hz = [", "bnad_hz = [", "bnad_hz: unknown key; accepted here: label, band_hz"),
             ("pcm_rate_hz = 2000.0", "pcm_rate_hz = \"2000\"", "pcm_rate_hz: invalid type"),
             ("ducking =", "ducking", "line "),
             ("[source]", "[sources]", "sources: unknown key"),
         ] {
             let refused = Device::parse(&text.replacen(from, to, 1)).unwrap_err().to_string();
-            assert!(refused.starts_with("line ") && refused.contains(told), "{refused}");
+            assert!(refused.starts_with("line ") && refused.contains(remarks), "{refused}");
         }
         let refused = Device::parse("label = \"x\"").unwrap_err().to_string();
         assert!(refused.starts_with("band_hz: is missing; "), "{refused}");

@@ -83,7 +83,7 @@ fn attack_decay_and_release_are_ramps_and_told() {
         r#"{{"Version":1,"Pattern":[{{"Event":{{"Time":0,"EventType":"HapticContinuous","EventDuration":1,{parameters}}}}}]}}"#
     );
     let read = ahap::parse(&text).unwrap();
-    assert!(read.told[0].contains("attack"), "{:?}", read.told);
+    assert!(read.remarks[0].contains("attack"), "{:?}", read.remarks);
     assert!((read.clip.duration_s() - 1.4).abs() < 1e-9);
     for (time_s, level) in [(0.25, 0.25), (0.75, 1.0), (1.2, 0.25)] {
         let is = at(&read.clip, time_s).0;

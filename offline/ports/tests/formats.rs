@@ -41,7 +41,7 @@ proptest! {
     #[test]
     fn a_haptic_file_comes_back_to_the_bit(clip in clips()) {
         let back = haptic_file::parse(&haptic_file::write(&clip).unwrap()).unwrap();
-        prop_assert_eq!(back, Read { clip, told: Vec::new() });
+        prop_assert_eq!(back, Read { clip, remarks: Vec::new() });
     }
 
     #[test]
@@ -210,7 +210,7 @@ fn each_rule_of_a_clip_is_refused_by_its_point() {
         assert!(error.contains(at), "{error} lacks {at}");
     }
     let late = haptic_file::parse(&good.replace("\"time\":0.5", "\"time\":1.5")).unwrap();
-    assert!(late.told[0].contains("1 frequency points") && late.clip.frequency.is_empty());
+    assert!(late.remarks[0].contains("1 frequency points") && late.clip.frequency.is_empty());
 }
 
 /// What a phone plays: the square of the intensities that its curve joins by straight lines.
@@ -238,9 +238,12 @@ fn a_slow_fade_is_as_strong_in_an_ahap_halfway() {
         let file = ahap::write(&clip, None).unwrap().main;
         let mut back = ahap::parse(&file).unwrap().clip;
         for time_s in (1..100).map(|i| f64::from(i) / 100.0) {
-            let (told, is) = (a + time_s * (b - a), played(&file, time_s));
-            let off_db = 20.0 * (is / told).log10();
-            assert!(is == told || off_db.abs() < 0.3 || (is - told).abs() < 0.001, "{a} {b} {time_s}: {is}");
+            let (remarks, is) = (a + time_s * (b - a), played(&file, time_s));
+            let off_db = 20.0 * (is / remarks).log10();
+            assert!(
+                is == remarks || off_db.abs() < 0.3 || (is - remarks).abs() < 0.001,
+                "{a} {b} {time_s}: {is}"
+            );
         }
         // What is read and written again grows by nothing.
         let points = back.amplitude.len();

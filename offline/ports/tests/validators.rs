@@ -65,10 +65,10 @@ fn metas_strict_validator_accepts_every_haptic_file_and_its_model_every_ahap() {
             }
         }
     }
-    let told = Command::new(validate).args(&files).output().unwrap();
-    let told = String::from_utf8(told.stdout).unwrap();
-    assert_eq!(told.lines().count(), files.len(), "{told}");
-    for line in told.lines() {
+    let remarks = Command::new(validate).args(&files).output().unwrap();
+    let remarks = String::from_utf8(remarks.stdout).unwrap();
+    assert_eq!(remarks.lines().count(), files.len(), "{remarks}");
+    for line in remarks.lines() {
         assert!(line.contains(": valid, ") || line.contains(": parsed, "), "{line}");
     }
     println!("{} files accepted", files.len());
@@ -141,14 +141,17 @@ fn mpegs_synthesiser_returns_a_curves_own_samples() {
         let written = hjif::write(&wave, 4000.0, 40.0, "test").unwrap();
         let (input, output) = (folder.join(format!("{index}.hjif")), folder.join(format!("{index}.wav")));
         std::fs::write(&input, &written.text).unwrap();
-        let told = Command::new(&synth).arg("-f").arg(&input).arg("-o").arg(&output).output().unwrap();
+        let remarks = Command::new(&synth).arg("-f").arg(&input).arg("-o").arg(&output).output().unwrap();
         // The standard's schema is not public, so that the synthesiser cannot find it says nothing
         // about the file.
-        let words: String = String::from_utf8_lossy(&told.stderr)
+        let words: String = String::from_utf8_lossy(&remarks.stderr)
             .lines()
             .filter(|line| !line.contains("JSON schema"))
             .collect();
-        assert!(told.status.success() && !words.contains("nvalid") && !words.contains("Missing"), "{words}");
+        assert!(
+            remarks.status.success() && !words.contains("nvalid") && !words.contains("Missing"),
+            "{words}"
+        );
         let mut reader = hound::WavReader::open(&output).unwrap();
         let theirs: Vec<f64> = reader.samples::<i32>().map(|x| f64::from(x.unwrap()) / 32_768.0).collect();
         let snr_db = |shift: isize| {

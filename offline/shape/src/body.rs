@@ -73,7 +73,7 @@ pub struct SolvedBody {
     /// Mass, kg.
     pub mass_kg: f64,
     /// Repairs and doubts, one line each.
-    pub told: Vec<String>,
+    pub remarks: Vec<String>,
 }
 
 /// Makes a body of a mesh; `progress` gets the part done, 0 to 1.
@@ -112,16 +112,16 @@ pub fn make_as_fine_as(
     progress: &mut dyn FnMut(f64),
 ) -> Result<SolvedBody, ShapeError> {
     let material = making.material.checked()?;
-    let mut told = Vec::new();
+    let mut remarks = Vec::new();
     let mut mesh = mesh.used();
     let middle = mesh.centre();
     if let Mesh::Surface(surface) = mesh {
         let cracks = if making.thickness_m.is_some() { Cracks::Hair } else { Cracks::Wide };
-        let mut surface = surface.joined(cracks, &mut told)?;
-        surface.leave_specks_out(&mut told);
+        let mut surface = surface.joined(cracks, &mut remarks)?;
+        surface.leave_specks_out(&mut remarks);
         mesh = Mesh::Surface(surface);
     }
-    let scale = making.scale(&mesh, &mut told)?;
+    let scale = making.scale(&mesh, &mut remarks)?;
     mesh.change(|p| p.map(|x| x * scale));
     // A mesh without points is refused below, for what it lacks.
     if !mesh.points().is_empty() {
@@ -133,14 +133,14 @@ pub fn make_as_fine_as(
             "the mesh is a solid",
             "leave it out: only a sheet has a thickness",
         )),
-        Mesh::Volume(volume) => from_volume(volume, None, &material, making, told, progress),
+        Mesh::Volume(volume) => from_volume(volume, None, &material, making, remarks, progress),
         Mesh::Curved(volume, surface) => {
-            from_volume(volume, Some(&surface), &material, making, told, progress)
+            from_volume(volume, Some(&surface), &material, making, remarks, progress)
         }
         Mesh::Surface(surface) => {
-            let body = Body::new(closed(surface, making.thickness_m, &mut told)?)?;
-            let mended = told.join("; ");
-            from_surface(&body, &material, (making, fineness), told, progress)
+            let body = Body::new(closed(surface, making.thickness_m, &mut remarks)?)?;
+            let mended = remarks.join("; ");
+            from_surface(&body, &material, (making, fineness), remarks, progress)
                 .map_err(|error| error.after(&mended))
         }
     }?;
@@ -155,32 +155,32 @@ fn from_volume(
     curved: Option<&SurfaceMesh>,
     material: &Elastic,
     making: &Making,
-    mut told: Vec<String>,
+    mut remarks: Vec<String>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<SolvedBody, ShapeError> {
-    let mut volume = volume.checked(&mut told)?;
+    let mut volume = volume.checked(&mut remarks)?;
     if let Some(surface) = curved {
         round_out(&mut volume, &TriangleTree::new(&surface.all_corners()));
     }
     let modes = solved(MOST_STEPS, &volume, material, &making.wanted, progress)?;
     if let Some(top) = modes.1.frequency_hz.last() {
-        tell_coarse(&volume, material, *top, &mut told);
+        tell_coarse(&volume, material, *top, &mut remarks);
     }
-    Ok(finished(&volume, modes, told))
+    Ok(finished(&volume, modes, remarks))
 }
 
 fn closed(
     surface: SurfaceMesh,
     thickness_m: Option<f64>,
-    told: &mut Vec<String>,
+    remarks: &mut Vec<String>,
 ) -> Result<SurfaceMesh, ShapeError> {
-    let Some(thickness_m) = thickness_m else { return surface.closed(told) };
+    let Some(thickness_m) = thickness_m else { return surface.closed(remarks) };
     let side = longest_side(&surface.points);
     if !(thickness_m > 0.0 && thickness_m < 0.5 * side) {
         let right = format!("must be above 0 and less than half of the longest side, {:.4} m", 0.5 * side);
         return Err(ShapeError::new("--thickness", format!("{thickness_m} is refused"), right));
     }
-    surface.thickened(thickness_m).joined(Cracks::Hair, told)?.closed(told)
+    surface.thickened(thickness_m).joined(Cracks::Hair, remarks)?.closed(remarks)
 }
 
 /// Fills a surface at the spacing that walls and waves want, and once more where the highest mode
@@ -189,7 +189,7 @@ fn from_surface(
     body: &Body,
     material: &Elastic,
     (making, fineness): (&Making, &Fineness),
-    mut told: Vec<String>,
+    mut remarks: Vec<String>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<SolvedBody, ShapeError> {
     let wave = |hz: f64| {
@@ -217,7 +217,7 @@ fn from_surface(
     if finer_m < 0.95 * spacing_m {
         let finest_m = body.spacing_m(fineness.most_unknowns).max(finer_m);
         if finest_m > 1.05 * finer_m {
-            told.push(format!(
+            remarks.push(format!(
                 "the mesh allowed has points every {:.2} mm, the highest modes want {:.2} mm: they are too high",
                 1e3 * finest_m,
                 1e3 * finer_m
@@ -239,7 +239,7 @@ fn from_surface(
                     ((modes, volume), repairs) = (finer, repairs_there);
                     break;
                 }
-                Err(error) => told.push(format!(
+                Err(error) => remarks.push(format!(
                     "points every {:.2} mm, which the highest modes want, cannot be solved for ({}): they are too high",
                     1e3 * at_m,
                     error.what
@@ -247,8 +247,8 @@ fn from_surface(
             }
         }
     }
-    told.append(&mut repairs);
-    Ok(finished(&volume, modes, told))
+    remarks.append(&mut repairs);
+    Ok(finished(&volume, modes, remarks))
 }
 
 fn solved(
@@ -263,7 +263,7 @@ fn solved(
     Ok((system, modes))
 }
 
-fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Vec<String>) -> SolvedBody {
+fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), remarks: Vec<String>) -> SolvedBody {
     SolvedBody {
         field: surface_field(volume, &system, &modes),
         degrees_of_freedom: system.unknowns(),
@@ -271,14 +271,14 @@ fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Ve
         volume_m3: volume.volume_m3(),
         mass_kg: system.mass_kg(),
         frequency_hz: modes.frequency_hz,
-        told,
+        remarks,
     }
 }
 
 impl Making {
     /// Metres to one unit of the mesh; a size that few objects have is reported where nothing was
     /// said about it.
-    fn scale(&self, mesh: &Mesh, told: &mut Vec<String>) -> Result<f64, ShapeError> {
+    fn scale(&self, mesh: &Mesh, remarks: &mut Vec<String>) -> Result<f64, ShapeError> {
         let side = longest_side(mesh.points());
         if let Some(size_m) = self.size_m {
             if !(size_m > 0.0 && size_m.is_finite()) {
@@ -291,7 +291,7 @@ impl Making {
         }
         let Some(unit_m) = self.unit_m else {
             if side > LARGE_M || (side > 0.0 && side < SMALL_M) {
-                told.push(format!(
+                remarks.push(format!(
                     "the longest side is {side:.4} m; meshes are in metres, --unit or --size scales one in other units"
                 ));
             }
@@ -306,7 +306,7 @@ impl Making {
 
 /// A given mesh is solved as it is; where its longest edge is long against the shortest wave, that
 /// is told.
-fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, told: &mut Vec<String>) {
+fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, remarks: &mut Vec<String>) {
     let shear_m = material.shear_wave_m(top_hz);
     let edge = |t: &[u32; 4]| {
         let c = volume.corners(*t);
@@ -316,7 +316,7 @@ fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, told: &mut 
     edges.sort_by(f64::total_cmp);
     let long = edges[edges.len() / 2];
     if long > shear_m / 3.0 {
-        told.push(format!(
+        remarks.push(format!(
             "elements of {:.1} mm are long for waves of {:.1} mm at {top_hz:.0} Hz: the highest modes are too high",
             1e3 * long,
             1e3 * shear_m

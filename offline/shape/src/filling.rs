@@ -91,7 +91,7 @@ impl Body {
     ///
     /// # Errors
     /// When the walls are too thin for the mesh allowed, or two parts are left.
-    pub fn fill(&self, spacing_m: f64, told: &mut Vec<String>) -> Result<VolumeMesh, ShapeError> {
+    pub fn fill(&self, spacing_m: f64, remarks: &mut Vec<String>) -> Result<VolumeMesh, ShapeError> {
         let expected = self.expected_unknowns(spacing_m);
         if expected > 1.3 * MOST_DEGREES_OF_FREEDOM as f64 {
             return Err(self.too_thin(expected));
@@ -121,22 +121,22 @@ impl Body {
         }
         peel(&mut kept, delaunay.points());
         let mut mesh = VolumeMesh { points: delaunay.points().to_vec(), tets: kept };
-        self.keep_one_part(&mut mesh, told)?;
-        let mut mesh = mesh.checked(told).map_err(|error| self.of_walls(error))?;
+        self.keep_one_part(&mut mesh, remarks)?;
+        let mut mesh = mesh.checked(remarks).map_err(|error| self.of_walls(error))?;
         facets::round_out(&mut mesh, &self.tree);
         self.check_volume(&mesh)?;
         Ok(mesh)
     }
 
     /// Leaves out what hangs on by less than a face, where that is little.
-    fn keep_one_part(&self, mesh: &mut VolumeMesh, told: &mut Vec<String>) -> Result<(), ShapeError> {
+    fn keep_one_part(&self, mesh: &mut VolumeMesh, remarks: &mut Vec<String>) -> Result<(), ShapeError> {
         let (lost, others) = mesh.keep_largest();
         if others == 0 {
             return Ok(());
         }
         let percent = 100.0 * lost;
         if lost <= LOST {
-            told.push(format!(
+            remarks.push(format!(
                 "{others} pieces that hung on by less than a wall were left out, {percent:.2} %"
             ));
             return Ok(());

@@ -151,7 +151,7 @@ impl SurfaceMesh {
 
     /// Leaves small pieces out whose box is apart from that of the largest: they would count as its
     /// size.
-    pub(crate) fn leave_specks_out(&mut self, told: &mut Vec<String>) {
+    pub(crate) fn leave_specks_out(&mut self, remarks: &mut Vec<String>) {
         let pieces = self.pieces();
         let Some((body, others)) = pieces.split_first() else { return };
         let is_speck = |piece: &&Piece| {
@@ -163,7 +163,7 @@ impl SurfaceMesh {
             return;
         }
         let area: f64 = others.iter().filter(is_speck).map(|piece| piece.area_m2).sum();
-        told.push(format!(
+        remarks.push(format!(
             "{specks} pieces apart from the body were left out, {:.2} % of the surface",
             100.0 * area / (area + body.area_m2)
         ));

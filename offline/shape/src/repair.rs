@@ -142,7 +142,7 @@ impl SurfaceMesh {
     }
 
     /// Joins points, takes needles and doubled triangles out and closes cracks.
-    pub(crate) fn repaired(mut self, cracks: Cracks, told: &mut Vec<String>) -> Self {
+    pub(crate) fn repaired(mut self, cracks: Cracks, remarks: &mut Vec<String>) -> Self {
         let side = longest_side(&self.points);
         self = self.in_order();
         self.weld(JOINED * side);
@@ -150,7 +150,7 @@ impl SurfaceMesh {
         let before = self.triangles.len();
         self.take_doubles_out();
         if self.triangles.len() < before {
-            told.push(format!("{} doubled triangles were left out", before - self.triangles.len()));
+            remarks.push(format!("{} doubled triangles were left out", before - self.triangles.len()));
         }
         let reaches = if cracks == Cracks::Wide { &CRACKS[..] } else { &CRACKS[..1] };
         for reach in reaches {
@@ -169,7 +169,7 @@ impl SurfaceMesh {
             if left < open && !closed.triangles.is_empty() {
                 // Hair cracks are rounding, not worth a word.
                 if *reach > JOINED {
-                    told.push(format!(
+                    remarks.push(format!(
                         "cracks up to {:.0e} of its size were closed: {open} open edges became {left}",
                         reach
                     ));

@@ -51,7 +51,7 @@ pub fn ringing(
     }
     let lost = body.frequency_hz.len() - modes.len();
     if lost > 0 {
-        body.told.push(format!("{lost} modes are damped so much that they do not swing; left out"));
+        body.remarks.push(format!("{lost} modes are damped so much that they do not swing; left out"));
     }
     modes
 }

@@ -58,7 +58,7 @@ impl SurfaceMesh {
     ///
     /// # Errors
     /// When a number is not finite or nothing is left.
-    pub fn joined(self, cracks: Cracks, told: &mut Vec<String>) -> Result<Self, ShapeError> {
+    pub fn joined(self, cracks: Cracks, remarks: &mut Vec<String>) -> Result<Self, ShapeError> {
         if let Some(i) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
             let what = format!("point {} is not a number", i + 1);
             return Err(ShapeError::new("", what, "coordinates must be finite metres"));
@@ -70,11 +70,11 @@ impl SurfaceMesh {
             let what = format!("has {} triangles", self.triangles.len());
             return Err(ShapeError::new("", what, format!("at most {MOST_TRIANGLES}")));
         }
-        let mut repaired = self.repaired(cracks, told);
+        let mut repaired = self.repaired(cracks, remarks);
         if repaired.triangles.is_empty() {
             return Err(ShapeError::new("", "every triangle is without area", "give the surface of a body"));
         }
-        repaired.turn_alike(told);
+        repaired.turn_alike(remarks);
         Ok(repaired)
     }
 
@@ -90,7 +90,7 @@ impl SurfaceMesh {
     }
 
     /// Turns the triangles of each part the way most of them are.
-    fn turn_alike(&mut self, told: &mut Vec<String>) {
+    fn turn_alike(&mut self, remarks: &mut Vec<String>) {
         let mut neighbours: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.triangles.len()];
         let uses = edge_uses(&self.triangles);
         for pair in uses.chunk_by(|a, b| a.edge == b.edge).filter(|uses| uses.len() == 2) {
@@ -127,7 +127,7 @@ impl SurfaceMesh {
             }
         }
         if count > 0 {
-            told.push(format!("{count} triangles were inside out and were turned"));
+            remarks.push(format!("{count} triangles were inside out and were turned"));
         }
     }
 
@@ -135,7 +135,7 @@ impl SurfaceMesh {
     ///
     /// # Errors
     /// When it is an open sheet or encloses nothing.
-    pub fn closed(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
+    pub fn closed(mut self, remarks: &mut Vec<String>) -> Result<Self, ShapeError> {
         let whole = self.area_m2();
         let Caps { caps, lost, holes } = self.caps();
         let area = |triangles: &[[Vec3; 3]]| triangles.iter().map(|t| length(area_vector(*t))).sum::<f64>();
@@ -152,7 +152,7 @@ impl SurfaceMesh {
         }
         if missing > 1e-9 * whole {
             let percent = 100.0 * missing / (whole + missing);
-            told.push(format!("{holes} holes were closed, {percent:.1} % of the surface"));
+            remarks.push(format!("{holes} holes were closed, {percent:.1} % of the surface"));
         }
         for [a, b, c] in caps.into_iter().chain(lost) {
             let first = self.points.len() as u32;
@@ -160,7 +160,7 @@ impl SurfaceMesh {
             self.triangles.push([first, first + 1, first + 2]);
         }
         let mut rejoined = self.joined(Cracks::Hair, &mut Vec::new())?;
-        rejoined.turn_parts_outwards(told);
+        rejoined.turn_parts_outwards(remarks);
         let side = longest_side(&rejoined.points);
         let enclosed = rejoined.volume_m3();
         if enclosed < 1e-6 * rejoined.area_m2() * side {
@@ -176,7 +176,7 @@ impl SurfaceMesh {
 
     /// Outer parts enclose a positive volume; a part inside another that is turned inwards is a
     /// cavity and stays.
-    fn turn_parts_outwards(&mut self, told: &mut Vec<String>) {
+    fn turn_parts_outwards(&mut self, remarks: &mut Vec<String>) {
         let part_of = self.parts();
         let mut triangles_of: Vec<Vec<usize>> = vec![Vec::new(); self.triangles.len()];
         part_of.iter().enumerate().for_each(|(t, &part)| triangles_of[part].push(t));
@@ -203,7 +203,7 @@ impl SurfaceMesh {
             }
         }
         if turned {
-            told.push("the surface was inside out and was turned".into());
+            remarks.push("the surface was inside out and was turned".into());
         }
     }
 

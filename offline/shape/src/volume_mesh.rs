@@ -67,7 +67,7 @@ impl VolumeMesh {
     /// # Errors
     /// When no body is left, it has several parts, three tetrahedra share a face, a number is not
     /// finite, or it has more than [`MOST_DEGREES_OF_FREEDOM`] unknowns.
-    pub fn checked(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
+    pub fn checked(mut self, remarks: &mut Vec<String>) -> Result<Self, ShapeError> {
         let refuse = |what: String, right: &str| Err(ShapeError::new("", what, right));
         if self.points.iter().flatten().any(|x| !x.is_finite()) {
             return refuse("a coordinate is not a number".into(), "must be finite metres");
@@ -75,10 +75,10 @@ impl VolumeMesh {
         if self.tets.is_empty() {
             return refuse("has no tetrahedron".into(), "give a volume mesh, or the surface of a body");
         }
-        self.merge_points(told);
+        self.merge_points(remarks);
         let side = longest_side(&self.points);
         check_side(side)?;
-        self.orient(side, told)?;
+        self.orient(side, remarks)?;
         self.refuse_overlaps()?;
         let parts = self.parts();
         if parts > 1 {
@@ -98,7 +98,7 @@ impl VolumeMesh {
     }
 
     /// Joins points at the same place and drops those no tetrahedron uses.
-    fn merge_points(&mut self, told: &mut Vec<String>) {
+    fn merge_points(&mut self, remarks: &mut Vec<String>) {
         let mut at: HashMap<[u64; 3], u32> = HashMap::new();
         let mut points = Vec::new();
         let mut used = vec![false; self.points.len()];
@@ -119,11 +119,11 @@ impl VolumeMesh {
         self.tets.iter_mut().flatten().for_each(|i| *i = moved[*i as usize]);
         self.points = points;
         if joined > 0 {
-            told.push(format!("{joined} points lay on others and were joined with them"));
+            remarks.push(format!("{joined} points lay on others and were joined with them"));
         }
     }
 
-    fn orient(&mut self, side: f64, told: &mut Vec<String>) -> Result<(), ShapeError> {
+    fn orient(&mut self, side: f64, remarks: &mut Vec<String>) -> Result<(), ShapeError> {
         let before = self.tets.len();
         let points = &self.points;
         let volume = |t: &[u32; 4]| tet_volume_m3(t.map(|i| points[i as usize]));
@@ -143,10 +143,10 @@ impl VolumeMesh {
             self.tets[i].swap(2, 3);
         }
         if flat > 0 {
-            told.push(format!("{flat} flat tetrahedra were left out"));
+            remarks.push(format!("{flat} flat tetrahedra were left out"));
         }
         if !turned.is_empty() && turned.len() < all {
-            told.push(format!("{} of {all} tetrahedra were inside out and were turned", turned.len()));
+            remarks.push(format!("{} of {all} tetrahedra were inside out and were turned", turned.len()));
         }
         Ok(())
     }

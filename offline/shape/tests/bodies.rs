@@ -41,7 +41,7 @@ fn a_box_of_twelve_triangles_keeps_its_edges_and_its_pitches() {
     ];
     let solved = body(Mesh::Surface(common::box_surface([0.12, 0.08, 0.05])), 20);
     assert!(worst(&solved, &RITZ_HZ) < 5e-3, "{:?}", solved.frequency_hz);
-    assert!((solved.volume_m3 / 4.8e-4 - 1.0).abs() < 1e-3 && solved.told.is_empty());
+    assert!((solved.volume_m3 / 4.8e-4 - 1.0).abs() < 1e-3 && solved.remarks.is_empty());
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn props_of_a_game_ring_stuffed_as_their_volume_meshes_do() {
             filled.frequency_hz[11],
             filled.degrees_of_freedom,
             stuffed.degrees_of_freedom,
-            stuffed.told,
+            stuffed.remarks,
             stuffed.volume_m3 / filled.volume_m3
         );
         assert!(error < 1e-2, "{name}: {:?} {:?}", filled.frequency_hz, stuffed.frequency_hz);

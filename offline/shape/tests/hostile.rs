@@ -46,7 +46,7 @@ fn damaged_meshes_are_the_clean_body_and_name_their_repairs() {
         loose.triangles.push([n, n + 1, n + 2]);
     }
     let doubled = joined(clean(), &flipped(clean(), |_| true), [0.0; 3]);
-    for (mesh, told) in [
+    for (mesh, remarks) in [
         (flipped(clean(), |_| true), "inside out"),
         (flipped(clean(), |t| t % 3 == 0), "inside out"),
         (doubled, "doubled"),
@@ -55,9 +55,13 @@ fn damaged_meshes_are_the_clean_body_and_name_their_repairs() {
     ] {
         let solved = made(Mesh::Surface(mesh), None).unwrap();
         for (hz, e) in solved.frequency_hz.iter().zip(&expected.frequency_hz) {
-            assert!((hz / e - 1.0).abs() < 5e-3, "{told}: {hz} {e}");
+            assert!((hz / e - 1.0).abs() < 5e-3, "{remarks}: {hz} {e}");
         }
-        assert!(solved.told.iter().any(|line| line.contains(told)) || told.is_empty(), "{:?}", solved.told);
+        assert!(
+            solved.remarks.iter().any(|line| line.contains(remarks)) || remarks.is_empty(),
+            "{:?}",
+            solved.remarks
+        );
     }
 }
 

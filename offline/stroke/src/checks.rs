@@ -166,9 +166,9 @@ pub fn stands_over_floor(floor: &Floor, warnings: &mut Vec<String>) -> Result<()
         ));
     }
     if floor.over_signal_db > -10.0 {
-        let told = if floor.from_standstill { "at standstill" } else { "judged by the top of the band" };
+        let origin = if floor.from_standstill { "at standstill" } else { "judged by the top of the band" };
         warnings
-            .push(format!("the noise floor ({told}) is {:.0} dB under the stroke", -floor.over_signal_db));
+            .push(format!("the noise floor ({origin}) is {:.0} dB under the stroke", -floor.over_signal_db));
     }
     if !floor.from_standstill && floor.over_signal_db > -30.0 {
         warnings.push(

@@ -49,7 +49,7 @@ impl Voice {
         self.between = Default::default();
         let force_n = self.path.begin(sample, slot, stamp);
         self.tip_force = TipForce::begin(sample);
-        self.rolling.tell(sample);
+        self.rolling.report(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
         seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });

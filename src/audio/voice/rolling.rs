@@ -20,7 +20,7 @@ const LAG: f64 = 0.8;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Rolling {
     /// Speed of slip and radius of what rolls, of the newest report; none while it slides.
-    told: Option<(f64, Option<f64>)>,
+    reported: Option<(f64, Option<f64>)>,
     /// Share of rolling at the last step of the grid, and at the next.
     share: [f64; 2],
     /// Roughness of the ground under its last sample.
@@ -34,13 +34,13 @@ pub(super) struct Rolling {
 
 impl Rolling {
     /// Takes from a report how it moves.
-    pub(super) fn tell(&mut self, sample: &ContactSample) {
-        self.told = sample.slip_m_s.map(|slip_m_s| (slip_m_s, sample.roll_radius_m));
+    pub(super) fn report(&mut self, sample: &ContactSample) {
+        self.reported = sample.slip_m_s.map(|slip_m_s| (slip_m_s, sample.roll_radius_m));
     }
 
     /// Tests whether any of it rolls, now or until the next step of the grid.
     pub(super) fn rolls(&self) -> bool {
-        self.told.is_some() || self.share != [0.0; 2]
+        self.reported.is_some() || self.share != [0.0; 2]
     }
 
     /// Begins as the newest report says, where the profile begins.
@@ -59,13 +59,13 @@ impl Rolling {
         let to = wanted + LAG * (from - wanted);
         // A ball that slides again does so to the bit in the end.
         self.share = [from, if wanted == 0.0 && to < 1e-6 { 0.0 } else { to }];
-        let radius_m = self.told.and_then(|(_, radius_m)| radius_m);
+        let radius_m = self.reported.and_then(|(_, radius_m)| radius_m);
         (self.filter, self.force) = over.filters(radius_m, self.roughness);
     }
 
     /// The share that the newest report asks for; none at rest.
     fn wanted(&self, at: &PathPoint) -> Option<f64> {
-        let Some((slip_m_s, _)) = self.told else { return Some(0.0) };
+        let Some((slip_m_s, _)) = self.reported else { return Some(0.0) };
         let [u, v] = at.velocity_m_s;
         let speed_m_s = libm::hypot(u, v);
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))

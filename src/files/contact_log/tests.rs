@@ -63,11 +63,11 @@ fn time_running_backwards_is_refused_with_its_line() {
 
 #[test]
 fn an_unknown_key_is_refused_with_line_and_likely_key() {
-    let told = |text: &str| ContactLog::parse(text, "log").unwrap_err().to_string();
+    let words = |text: &str| ContactLog::parse(text, "log").unwrap_err().to_string();
     let line =
         r#"{"t":0.0,"event":"move","contact":1,"uv":[0.1,0.5],"velocity":[0.1,0.0],"normal_force_n":1}"#;
-    assert_eq!(told(line), "log:1: velocity: unknown key of \"move\"; write velocity_m_s");
-    let message = told(&format!("{LOG}{}", line.replace("velocity", "colour")));
+    assert_eq!(words(line), "log:1: velocity: unknown key of \"move\"; write velocity_m_s");
+    let message = words(&format!("{LOG}{}", line.replace("velocity", "colour")));
     assert!(
         message.starts_with("log:5: colour: unknown key of \"move\"; accepted here: actuator, "),
         "{message}"
@@ -75,9 +75,10 @@ fn an_unknown_key_is_refused_with_line_and_likely_key() {
     assert!(message.contains("velocity_m_s") && !message.contains("probe"), "{message}");
     // A forgotten unit is told before the key that is missing for it.
     assert!(
-        told(&line.replace("velocity", "gain").replace("force_n", "force")).ends_with("write normal_force_n")
+        words(&line.replace("velocity", "gain").replace("force_n", "force"))
+            .ends_with("write normal_force_n")
     );
-    assert!(told(r#"{"t":0.0,"event":"end","contact":1,"uv":[0,0]}"#).contains("accepted here: contact, "));
+    assert!(words(r#"{"t":0.0,"event":"end","contact":1,"uv":[0,0]}"#).contains("accepted here: contact, "));
 }
 
 #[test]
@@ -188,13 +189,13 @@ fn a_slip_is_reported_with_line_key_cause_and_remedy() {
     let lines: Vec<&str> = LOG.lines().collect();
     let of_begin = SLIPS.iter().map(|slip| (lines[0], slip));
     let of_impact = IMPACT_SLIPS.iter().map(|slip| (lines[2], slip));
-    for (line, (from, to, told)) in of_begin.chain(of_impact) {
+    for (line, (from, to, words)) in of_begin.chain(of_impact) {
         let slipped = line.replacen(from, to, 1);
         assert_ne!(slipped, line, "{from}");
         // Behind a line that only says the version, and an empty one.
         let message =
             ContactLog::parse(&format!("{{\"version\":1}}\n\n{slipped}\n"), "log").unwrap_err().to_string();
-        assert!(message.starts_with(&format!("log:3: {told}")), "{message}\nis not\n{told}");
+        assert!(message.starts_with(&format!("log:3: {words}")), "{message}\nis not\n{words}");
         assert_eq!(message.lines().count(), 1);
     }
 }
@@ -203,14 +204,14 @@ fn a_slip_is_reported_with_line_key_cause_and_remedy() {
 fn an_unknown_name_or_channel_is_reported_with_its_line() {
     let text = format!("{{\"version\":1}}\n\n{}", LOG.replace("\"tile\"", "\"tilee\""));
     let log = ContactLog::parse(&text, "log").unwrap();
-    let told = log.check_names(&names()).unwrap_err();
-    assert!(told.to_string().starts_with("event 3 at t = 0.2 s: body: \"tilee\" is unknown; "), "{told}");
-    let line = told.in_text(&text, "log").to_string();
+    let words = log.check_names(&names()).unwrap_err();
+    assert!(words.to_string().starts_with("event 3 at t = 0.2 s: body: \"tilee\" is unknown; "), "{words}");
+    let line = words.in_text(&text, "log").to_string();
     assert_eq!(line, "log:5: body: \"tilee\" is unknown; write \"tile\"; must be one of: pen, tile");
     let line = log.check_actuators(0).unwrap_err().in_text(&text, "log").to_string();
     assert!(line.starts_with("log:3: actuator: 0 is not in the scene; must be below 0"), "{line}");
     let unnamed = Names { probes: HashMap::new(), ..names() };
     let probe = LOG.replacen("\"uv\"", "\"probe\":\"pen\",\"uv\"", 1);
-    let told = ContactLog::parse(&probe, "log").unwrap().check_names(&unnamed).unwrap_err().to_string();
-    assert!(told.ends_with("probe: \"pen\" is unknown; the scene names no probe; leave it out, or give the scene one with that name"), "{told}");
+    let words = ContactLog::parse(&probe, "log").unwrap().check_names(&unnamed).unwrap_err().to_string();
+    assert!(words.ends_with("probe: \"pen\" is unknown; the scene names no probe; leave it out, or give the scene one with that name"), "{words}");
 }

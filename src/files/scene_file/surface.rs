@@ -143,8 +143,8 @@ fn read_frame(fields: &mut Fields) -> Result<Option<SurfaceFrame>, FileError> {
     let v_axis = fields.vector(&frame::V_AXIS)?.unwrap_or([0.0, 1.0, 0.0]);
     let place = fields.inner("");
     fields.finish()?;
-    let told = |error| FileError::from_error(error).within(place.trim_end_matches([':', ' ', '.']));
-    SurfaceFrame::new(origin_m, u_axis, v_axis).map(Some).map_err(told)
+    let placed = |error| FileError::from_error(error).within(place.trim_end_matches([':', ' ', '.']));
+    SurfaceFrame::new(origin_m, u_axis, v_axis).map(Some).map_err(placed)
 }
 
 fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<RoughnessEntry, FileError> {

@@ -157,10 +157,10 @@ impl Motions {
 
     /// Contradictions found so far, surface by surface.
     pub(crate) fn contradictions(&self) -> Vec<Contradiction> {
-        let told: Vec<_> =
+        let found: Vec<_> =
             self.tallies.iter().flat_map(|(surface, tally)| tally.contradictions(*surface)).collect();
-        let surfaces: Vec<_> = told.iter().map(|told| told.surface().index() as f64).collect();
-        rising(&surfaces).into_iter().map(|place| told[place]).collect()
+        let surfaces: Vec<_> = found.iter().map(|found| found.surface().index() as f64).collect();
+        rising(&surfaces).into_iter().map(|place| found[place]).collect()
     }
 }
 
@@ -227,19 +227,19 @@ impl Tally {
     }
 
     fn contradictions(&self, surface: SurfaceId) -> Vec<Contradiction> {
-        let mut told = Vec::new();
+        let mut found = Vec::new();
         let many = |count: u32| count > LEAST_STEPS && 2 * count > self.reports;
         if many(self.begins_again) {
-            told.push(Contradiction::BeginsAgain { surface, count: self.begins_again });
+            found.push(Contradiction::BeginsAgain { surface, count: self.begins_again });
         }
         if many(self.leaps) {
-            told.push(Contradiction::TwoPlaces { surface, count: self.leaps });
+            found.push(Contradiction::TwoPlaces { surface, count: self.leaps });
         } else if self.hops > LEAST_STEPS && REPORTS_A_HOP * self.hops > self.reports {
-            told.push(Contradiction::Hops { surface, count: self.hops });
+            found.push(Contradiction::Hops { surface, count: self.hops });
         } else if self.steps >= LEAST_STEPS && 2 * self.agree < self.steps {
-            told.extend(self.motion(surface));
+            found.extend(self.motion(surface));
         }
-        told
+        found
     }
 
     /// Disagreement of place and velocity, if there is one.

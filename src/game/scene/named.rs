@@ -42,8 +42,8 @@ impl Scene {
     /// As [`report`](Self::report); a full queue also where 1024 named strikes wait.
     #[expect(clippy::result_large_err, reason = "as of `report`")]
     pub fn report_named(&mut self, time_s: f64, name: u64, impact: Impact) -> Result<(), ReportError> {
-        if let Some((ticket, then_s, told)) = self.named.known.get(&name).copied() {
-            let is_same = (then_s, told) == (time_s, impact);
+        if let Some((ticket, then_s, earlier)) = self.named.known.get(&name).copied() {
+            let is_same = (then_s, earlier) == (time_s, impact);
             if is_same || !self.take_back(ticket) {
                 Counters::add(&self.counters.repeated, 1);
                 return Ok(());

@@ -79,7 +79,7 @@ impl Scene {
         if let ContactEvent::Motion { body, motion } = event {
             return self.report_motion(time_s, body, motion);
         }
-        let told = event;
+        let original = event;
         let (event, held) = self.checked(event)?;
         let goes_back = ticket != 0 && time_s < self.clock.newest_s();
         if goes_back {
@@ -88,7 +88,7 @@ impl Scene {
             self.checked_time(time_s)?;
         }
         Counters::add(&self.counters.held, u64::from(held));
-        self.note_touch(&told);
+        self.note_touch(&original);
         let position = self.counters.position.load(Relaxed);
         self.settle_recording(position);
         let stamped = if goes_back {
@@ -102,7 +102,7 @@ impl Scene {
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
         self.flush_held();
         let stamp = stamped.stamp;
-        let in_game_time = event.with_velocity_of(&told);
+        let in_game_time = event.with_velocity_of(&original);
         let event = event.at_pace(self.clock.pace());
         if let ContactEvent::Impact(impact) = &event
             && self.comes_too_soon(stamp, impact)
@@ -122,7 +122,7 @@ impl Scene {
         if let Some(recording) = &mut self.recording {
             let rate_hz = self.config.inner_rate_hz();
             let reported = (self.clock.epoch(), position as f64 / rate_hz);
-            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&told), ticket);
+            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&original), ticket);
         }
         Ok(())
     }

@@ -88,21 +88,21 @@ mod tests {
         let mut spin = Spin::default();
         for n in 0..60 {
             let t = f64::from(n) / 60.0;
-            let told = spin.under(t, SIZE_M, wheel([0.0, 0.0], 13.0));
-            assert_eq!(told.velocity_m_s, Some([13.0, 0.0]));
-            assert!((told.uv[0] - (0.2 + 13.0 * t / 0.5)).abs() < 1e-9 && told.uv[1] == 0.3);
+            let place = spin.under(t, SIZE_M, wheel([0.0, 0.0], 13.0));
+            assert_eq!(place.velocity_m_s, Some([13.0, 0.0]));
+            assert!((place.uv[0] - (0.2 + 13.0 * t / 0.5)).abs() < 1e-9 && place.uv[1] == 0.3);
         }
         // Where it came to it stays, and a hitch is no spin of minutes.
         let (then, stops) = (59.0 / 60.0, wheel([0.0, 0.0], 0.0));
-        let told = spin.under(then + 60.0, SIZE_M, stops);
-        assert!((told.uv[0] - (0.2 + 13.0 * (then + LONGEST_S) / 0.5)).abs() < 1e-9);
-        assert_eq!(spin.under(then + 61.0, SIZE_M, stops).uv, told.uv);
+        let place = spin.under(then + 60.0, SIZE_M, stops);
+        assert!((place.uv[0] - (0.2 + 13.0 * (then + LONGEST_S) / 0.5)).abs() < 1e-9);
+        assert_eq!(spin.under(then + 61.0, SIZE_M, stops).uv, place.uv);
     }
 
     #[test]
     fn a_wheel_that_slips_on_its_way_runs_in_its_direction() {
-        let told = Spin::default().under(0.0, SIZE_M, wheel([0.0, -1.0], 13.0));
-        assert_eq!(told.velocity_m_s, Some([0.0, -13.0]));
+        let place = Spin::default().under(0.0, SIZE_M, wheel([0.0, -1.0], 13.0));
+        assert_eq!(place.velocity_m_s, Some([0.0, -13.0]));
     }
 
     #[test]

@@ -74,17 +74,17 @@ pub(super) fn supervise(
     inbox: mpsc::Receiver<Message>,
 ) -> Result<JoinHandle<()>, DeviceError> {
     let job = Job { device, options, rate_hz, meters, orders };
-    let (told, outcome) = mpsc::channel();
+    let (ready, outcome) = mpsc::channel();
     let supervisor = std::thread::Builder::new().name("asperity device".into()).spawn(move || {
         let mut number = 0;
         let mut streams = match job.build(number) {
             Ok(streams) => {
-                let _ = told.send(Ok(()));
+                let _ = ready.send(Ok(()));
                 Some(streams)
             }
             Err(error) => {
                 drop(job);
-                let _ = told.send(Err(error));
+                let _ = ready.send(Err(error));
                 return;
             }
         };

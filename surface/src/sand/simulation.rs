@@ -83,7 +83,7 @@ pub struct SandFigures {
 /// State of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 struct Track {
-    told: Option<Pose>,
+    newest: Option<Pose>,
     pose: Option<Pose>,
     /// Level of the sand around, metres above the bottom.
     level_m: f64,
@@ -212,8 +212,8 @@ impl SandSimulation {
         let finite = pose.position_m.iter().chain(&pose.velocity_m_s).all(|x| x.is_finite());
         if let Some(track) = self.tracks.get_mut(pose.contact).filter(|_| finite) {
             let normal_force_n = if pose.normal_force_n.is_finite() { pose.normal_force_n } else { 0.0 };
-            let landed = pose.landed || track.told.is_some_and(|told| told.landed);
-            track.told = Some(Pose { normal_force_n: normal_force_n.clamp(0.0, 1e4), landed, ..pose });
+            let landed = pose.landed || track.newest.is_some_and(|newest| newest.landed);
+            track.newest = Some(Pose { normal_force_n: normal_force_n.clamp(0.0, 1e4), landed, ..pose });
         }
     }
 
@@ -259,7 +259,7 @@ impl SandSimulation {
             if track.pose.take().is_some() {
                 wake_print(&mut self.erosion, &self.grid, press);
             }
-            track.told = None;
+            track.newest = None;
         }
         self.erosion.settle(&mut self.grid);
     }
@@ -267,7 +267,7 @@ impl SandSimulation {
     /// Tests whether nothing slides and no tool is down.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.erosion.is_settled() && self.tracks.iter().all(|t| t.pose.is_none() && t.told.is_none())
+        self.erosion.is_settled() && self.tracks.iter().all(|t| t.pose.is_none() && t.newest.is_none())
     }
 
     /// Volumes and steepest slope.

@@ -57,9 +57,9 @@ fn mesh(name: &str, data: &[u8]) {
             let corners = surface.triangles.iter().flatten();
             assert!(corners.into_iter().all(|&i| (i as usize) < surface.points.len()));
             if surface.triangles.len() < 200 {
-                let mut told = Vec::new();
-                let joined = surface.joined(Cracks::Wide, &mut told);
-                let _ = joined.and_then(|surface| surface.closed(&mut told));
+                let mut message = Vec::new();
+                let joined = surface.joined(Cracks::Wide, &mut message);
+                let _ = joined.and_then(|surface| surface.closed(&mut message));
             }
         }
         Ok(Mesh::Curved(..)) => {}

@@ -115,7 +115,7 @@ fn solved(inbox: &[u8], name_bytes: usize, making: &Making, damping: Damping) ->
     let mut body = make_as_fine_as(mesh, &making, &Fineness::PREVIEW, &mut |_| {})
         .map_err(|error| error.within(name).to_string())?;
     if is_odd {
-        body.told.insert(
+        body.remarks.insert(
             0,
             format!("it is {side:.3} long in the file, where a metre is 1; it is taken as {USUAL_M} m"),
         );
@@ -130,7 +130,7 @@ fn numbers(mut body: SolvedBody, damping: &Damping) -> Result<Vec<f64>, String> 
     if modes.is_empty() {
         return Err("no mode of it rings; must be stiffer, larger or less damped".to_owned());
     }
-    TOLD.set(body.told.join("\n"));
+    TOLD.set(body.remarks.join("\n"));
     let field = &body.field;
     let counts =
         [modes.len(), field.points.len(), field.triangles.len(), struck_point, body.degrees_of_freedom];

@@ -70,9 +70,9 @@ pub fn places(merged: &Merged, shapes: &[Shape<'_>]) -> Option<Places> {
     if pairs.len() < LEAST_MODES {
         return None;
     }
-    let mut told = vec![first.iter().map(|mode| mode.amplitude).collect::<Vec<f64>>()];
-    told.extend(merged.positions());
-    let problem = Problem::new(&told, &pairs, shapes);
+    let mut amplitudes = vec![first.iter().map(|mode| mode.amplitude).collect::<Vec<f64>>()];
+    amplitudes.extend(merged.positions());
+    let problem = Problem::new(&amplitudes, &pairs, shapes);
     let points = shapes[pairs[0].1].across.len().max(1);
     let solved = (0..points).step_by(points.div_ceil(BEGINNINGS)).filter_map(|point| problem.solve(point));
     let best = solved.min_by(|a, b| a.lost.total_cmp(&b.lost))?;
@@ -122,7 +122,7 @@ fn pairs(measured_hz: &[f64], shapes: &[Shape<'_>], factor: f64) -> Vec<(usize, 
 
 /// Amplitudes `[strike][mode]` of unit weight, and motions `[mode][point]`.
 struct Problem<'a> {
-    told: Vec<Vec<f64>>,
+    amplitudes: Vec<Vec<f64>>,
     across: Vec<&'a [f64]>,
     /// Part that no place explains.
     total: f64,
@@ -136,14 +136,18 @@ struct Solved {
 }
 
 impl<'a> Problem<'a> {
-    fn new(told: &[Vec<f64>], pairs: &[(usize, usize)], shapes: &[Shape<'a>]) -> Self {
-        let size = |k: usize| told.iter().map(|strike| strike[k].powi(2)).sum::<f64>().sqrt().max(1e-300);
-        let told: Vec<Vec<f64>> =
-            told.iter().map(|strike| pairs.iter().map(|(k, _)| strike[*k] / size(*k)).collect()).collect();
-        let mean = |k: usize| told.iter().map(|strike| strike[k]).sum::<f64>() / told.len() as f64;
+    fn new(amplitudes: &[Vec<f64>], pairs: &[(usize, usize)], shapes: &[Shape<'a>]) -> Self {
+        let size =
+            |k: usize| amplitudes.iter().map(|strike| strike[k].powi(2)).sum::<f64>().sqrt().max(1e-300);
+        let amplitudes: Vec<Vec<f64>> = amplitudes
+            .iter()
+            .map(|strike| pairs.iter().map(|(k, _)| strike[*k] / size(*k)).collect())
+            .collect();
+        let mean =
+            |k: usize| amplitudes.iter().map(|strike| strike[k]).sum::<f64>() / amplitudes.len() as f64;
         let total =
-            (0..pairs.len()).map(|k| told.iter().map(|s| (s[k] - mean(k)).powi(2)).sum::<f64>()).sum();
-        Self { across: pairs.iter().map(|(_, shape)| shapes[*shape].across).collect(), told, total }
+            (0..pairs.len()).map(|k| amplitudes.iter().map(|s| (s[k] - mean(k)).powi(2)).sum::<f64>()).sum();
+        Self { across: pairs.iter().map(|(_, shape)| shapes[*shape].across).collect(), amplitudes, total }
     }
 
     /// Turns of places and gains, from a first strike at `point`. None where some mode does not
@@ -155,14 +159,14 @@ impl<'a> Problem<'a> {
             if across[point].abs() < 1e-3 * largest(k) {
                 return None;
             }
-            gains.push(self.told[0][k] / across[point]);
+            gains.push(self.amplitudes[0][k] / across[point]);
         }
         let mut solved = Solved { points: vec![point], levels: vec![1.0], gains, lost: f64::INFINITY };
         for _ in 0..TURNS {
             let before = solved.lost;
             let first = usize::from(before.is_infinite());
             let at: Vec<(usize, f64)> =
-                (first..self.told.len()).map(|strike| self.nearest(&solved.gains, strike)).collect();
+                (first..self.amplitudes.len()).map(|strike| self.nearest(&solved.gains, strike)).collect();
             if first == 0 {
                 (solved.points, solved.levels) = (Vec::new(), Vec::new());
             }
@@ -178,10 +182,10 @@ impl<'a> Problem<'a> {
 
     /// The point, and how hard it was struck, that explains a strike best.
     fn nearest(&self, gains: &[f64], strike: usize) -> (usize, f64) {
-        let told = &self.told[strike];
+        let amplitudes = &self.amplitudes[strike];
         let of = |point: usize| {
             let (mut both, mut own) = (0.0, 0.0);
-            for ((x, gain), across) in told.iter().zip(gains).zip(&self.across) {
+            for ((x, gain), across) in amplitudes.iter().zip(gains).zip(&self.across) {
                 let wanted = gain * across[point];
                 (both, own) = (both + x * wanted, own + wanted * wanted);
             }
@@ -197,9 +201,10 @@ impl<'a> Problem<'a> {
     fn regain(&self, solved: &mut Solved) {
         solved.lost = 0.0;
         for (k, gain) in solved.gains.iter_mut().enumerate() {
-            let strikes = solved.points.iter().zip(&solved.levels).zip(&self.told);
-            let pairs: Vec<[f64; 2]> =
-                strikes.map(|((point, level), told)| [told[k], level * self.across[k][*point]]).collect();
+            let strikes = solved.points.iter().zip(&solved.levels).zip(&self.amplitudes);
+            let pairs: Vec<[f64; 2]> = strikes
+                .map(|((point, level), amplitudes)| [amplitudes[k], level * self.across[k][*point]])
+                .collect();
             let both: f64 = pairs.iter().map(|[x, y]| x * y).sum();
             let own: f64 = pairs.iter().map(|[_, y]| y * y).sum();
             *gain = if own > 0.0 { both / own } else { 0.0 };

@@ -163,8 +163,8 @@ impl Fit {
             as_is: analysis.explained || offset > 0,
         };
         let any = !partials.is_empty();
-        let (Solved { partials, early, lead, .. }, told) = solving.solved(partials);
-        warnings.extend(told);
+        let (Solved { partials, early, lead, .. }, further) = solving.solved(partials);
+        warnings.extend(further);
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
         // The strike itself, from which times are counted now.
         let (contact, onset, offset) = (offset, onset - lead, offset + lead);

@@ -127,19 +127,19 @@ mod tests {
             let mut partials = [partial(1065.0, t60_s, 0.1)];
             let left = subtract(&sound, &partials);
             bound_rings(&mut partials, &left, &floor);
-            let told = bounded(&partials, COUNT, RATE_HZ).is_some();
-            (3.0 * LN_10 / (partials[0].delta * RATE_HZ), told)
+            let limited = bounded(&partials, COUNT, RATE_HZ).is_some();
+            (3.0 * LN_10 / (partials[0].delta * RATE_HZ), limited)
         };
         // Of δ N, with N samples of noise σ and a mode of amplitude A, the deviation is √(24 / N) σ
         // / A or more: 0.1 for σ = 0.3, 0.5 for 1.5 and 1.3 for 4. At the bound δ N is 2.3; of 2 s
         // it is 1.73, of 10 s 0.35.
         for (noise, t60_s) in [(1.5, 2.0), (4.0, 10.0)] {
-            let (unknown_s, told) = longest_s(noise, t60_s);
-            assert!((unknown_s - 1.5).abs() < 1e-6 && told, "{noise} {t60_s}: {unknown_s}");
+            let (unknown_s, limited) = longest_s(noise, t60_s);
+            assert!((unknown_s - 1.5).abs() < 1e-6 && limited, "{noise} {t60_s}: {unknown_s}");
         }
         for (noise, t60_s) in [(0.03, 2.0), (0.3, 10.0), (1e-5, 10.0)] {
-            let (known_s, told) = longest_s(noise, t60_s);
-            assert!((known_s - t60_s).abs() < 1e-6 && !told, "{noise} {t60_s}: {known_s}");
+            let (known_s, limited) = longest_s(noise, t60_s);
+            assert!((known_s - t60_s).abs() < 1e-6 && !limited, "{noise} {t60_s}: {known_s}");
         }
         // What the sound supports is not asked.
         assert!(!longest_s(0.3, 1.2).1);

@@ -78,21 +78,21 @@ pub(super) fn heights_of(
             let linear = picture.map(linear_light);
             above_the_ground(shape_by(Method::FlatGround, &linear, Light::OVERHEAD, |_| {})?)
         }
-        (Some(method), told) => {
+        (Some(method), asked) => {
             let linear = picture.map(linear_light);
-            let estimated = if told.is_none() { estimate_light(&linear) } else { None };
-            let light = told.or(estimated).unwrap_or(Light::ABOVE_LEFT);
-            by_shading(&linear, method, light, told.is_some(), estimated.is_some(), progress)?
+            let estimated = if asked.is_none() { estimate_light(&linear) } else { None };
+            let light = asked.or(estimated).unwrap_or(Light::ABOVE_LEFT);
+            by_shading(&linear, method, light, asked.is_some(), estimated.is_some(), progress)?
         }
-        (None, Some(told)) if told.slant_rad() < LEAST_SLANT_RAD => {
-            match shape_by(Method::FlatGround, &picture.map(linear_light), told, |_| {}) {
+        (None, Some(asked)) if asked.slant_rad() < LEAST_SLANT_RAD => {
+            match shape_by(Method::FlatGround, &picture.map(linear_light), asked, |_| {}) {
                 Ok(shape) => above_the_ground(shape),
-                Err(_) => by_brightness(picture, whole, Some(Fallback::FrontalLight(told.slant_rad())))?,
+                Err(_) => by_brightness(picture, whole, Some(Fallback::FrontalLight(asked.slant_rad())))?,
             }
         }
-        (None, Some(told)) => {
+        (None, Some(asked)) => {
             let linear = picture.map(linear_light);
-            by_shading(&linear, Method::Integrable(STEPS), told, true, false, progress)?
+            by_shading(&linear, Method::Integrable(STEPS), asked, true, false, progress)?
         }
         (None, None) => by_what_is_found(picture, whole, progress)?,
     };
@@ -143,13 +143,13 @@ fn by_shading(
     linear: &Raster,
     method: Method,
     light: Light,
-    told: bool,
+    asked: bool,
     light_was_found: bool,
     progress: impl FnMut(f64),
 ) -> Result<Found, DesignError> {
     let mut shape = shape_by(method, linear, light, progress)?;
     shape.height_px = without_streaks(&shape.height_px, light);
-    let sign = if told { Sign::given(false) } else { Sign::of_found_light() };
+    let sign = if asked { Sign::given(false) } else { Sign::of_found_light() };
     Ok(Found { shape, sign, light_was_found, fallback: None })
 }
 

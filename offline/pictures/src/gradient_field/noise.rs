@@ -48,8 +48,9 @@ struct Level {
 impl Noise {
     /// From the most that rounding leaves, and what is seen at every place.
     pub fn of(most: f64, bands: &Bands, seen: &[Seen]) -> Self {
-        let told = || seen.iter().skip(1).filter(|s| s.square >= UNSEEN).map(|s| s.across);
-        let (count, sum, squares) = told().fold((0.0, 0.0, 0.0), |(n, s, q), a| (n + 1.0, s + a, q + a * a));
+        let visible = || seen.iter().skip(1).filter(|s| s.square >= UNSEEN).map(|s| s.across);
+        let (count, sum, squares) =
+            visible().fold((0.0, 0.0, 0.0), |(n, s, q), a| (n + 1.0, s + a, q + a * a));
         let mean = most.min(sum / f64::max(count, 1.0));
         // Squares have twice the mean's square where powers are those of noise: distributed
         // exponentially.

@@ -46,10 +46,10 @@ pub fn curl(field: &Slopes, derivative: Derivative) -> f64 {
 
 /// Share at every place.
 pub(super) fn share_across(seen: &[Seen]) -> f64 {
-    let told = || seen.iter().skip(1).filter(|at| at.square > 0.0);
+    let visible = || seen.iter().skip(1).filter(|at| at.square > 0.0);
     let power = |at: &Seen| at.along / at.square + at.across;
-    let floor = CLEAR_OF_NOISE * median(told().map(power).collect());
-    let (turning, all) = told()
+    let floor = CLEAR_OF_NOISE * median(visible().map(power).collect());
+    let (turning, all) = visible()
         .filter(|at| power(at) >= floor)
         .fold((0.0, 0.0), |(turning, all), at| (turning + at.across, all + power(at)));
     if all == 0.0 { 0.0 } else { turning / all }

@@ -148,16 +148,16 @@ impl Statistics {
         let tries = self.tries(task);
         let count = (tries.len() + 1) as f64;
         let mut tried = 0.0;
-        let mut told = |made: Candidate| {
+        let mut noted = |made: Candidate| {
             tried += 1.0;
             progress(tried / count);
             made
         };
         if self.is_moderate() {
-            let make = |feel: &mut Self, start: Raster, with| told(feel.try_out(start, seam, with));
+            let make = |feel: &mut Self, start: Raster, with| noted(feel.try_out(start, seam, with));
             return self.nearest(sought, tries, 1.0, make).0;
         }
-        let coarsely = |feel: &mut Self, start: Raster, with| told(feel.try_coarsely(&start, seam, with));
+        let coarsely = |feel: &mut Self, start: Raster, with| noted(feel.try_coarsely(&start, seam, with));
         let (made, begun) = self.nearest(sought, tries, MARGIN, coarsely);
         // Terraces are slopes on the coarser grid: only the fine one asks for a memory.
         let alone = (made.borrowed == 0.0 && begun.task.gait == Schedule::Plain).then_some(remembering(task));

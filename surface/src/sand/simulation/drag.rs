@@ -37,12 +37,12 @@ impl SandSimulation {
     /// Takes what a contact was given; one that was lifted leaves its print.
     pub(super) fn set_out(&mut self, contact: usize) {
         let track = &mut self.tracks[contact];
-        let told = track.told.take();
-        if told.is_none_or(|to| to.landed) && track.pose.take().is_some() {
+        let newest = track.newest.take();
+        if newest.is_none_or(|to| to.landed) && track.pose.take().is_some() {
             wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
             track.displaced_m2 = 0.0;
         }
-        let Some(to) = told else { return };
+        let Some(to) = newest else { return };
         let depth_m = self.law.depth_m(to.normal_force_n);
         // Of the tool, not of what it cuts: in its own groove it cuts next to nothing.
         track.radius_m = self.tool.print_radius_m(depth_m);

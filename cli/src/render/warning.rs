@@ -6,31 +6,31 @@ use asperity::offline::silence::Rendered;
 /// One line each, with the key or field that mends it.
 pub fn warnings(rendered: &Rendered<'_>, report: &Report) -> Vec<String> {
     let file = rendered.file;
-    let mut told = rendered.losses();
-    told.extend(clipped(report));
+    let mut remarks = rendered.losses();
+    remarks.extend(clipped(report));
     // Who asked for a limiter knows that it works.
     let asked = file.audio.iter().any(|bus| bus.limit == Some(true))
         || file.actuators.iter().any(|actuator| actuator.limit_peaks == Some(true));
-    told.extend(turned_down(report).filter(|_| !asked));
-    told.extend(rendered.silences());
-    told
+    remarks.extend(turned_down(report).filter(|_| !asked));
+    remarks.extend(rendered.silences());
+    remarks
 }
 
 fn clipped(report: &Report) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut remarks = Vec::new();
     if report.audio_peak > 1.0 {
         let peak = report.audio_peak;
-        told.push(format!(
+        remarks.push(format!(
             "the audio exceeds full scale (peak {peak:.2}): lower gain under [audio], or write limit = true there"
         ));
     }
     for (channel, peak) in report.haptic_peak.iter().enumerate().filter(|(_, peak)| **peak > 1.0) {
-        told.push(format!(
+        remarks.push(format!(
             "haptic channel {channel} peaks at {peak:.2} of full scale: raise full_scale of its [[actuator]], or write \
              limit = true there"
         ));
     }
-    told
+    remarks
 }
 
 /// A limiter that works as hard as that is heard and felt.
