@@ -50,8 +50,8 @@ impl Plugin for AvianTouchPlugin {
             Ok(probes) => {
                 probes.named(RIGID_PROBE).for_each(|(name, id)| touch.name_own_probe(&name, id));
                 let pairs = BTreeMap::new();
-                let told = HashSet::new();
-                app.insert_resource(Listener { probes, pairs, next_contact: FIRST_CONTACT, told });
+                let vec3 = HashSet::new();
+                app.insert_resource(Listener { probes, pairs, next_contact: FIRST_CONTACT, vec3 });
                 app.add_systems(
                     FixedPostUpdate,
                     listen.after(PhysicsSystems::Last).in_set(TouchSystems::Report),
@@ -69,7 +69,7 @@ struct Listener {
     pairs: BTreeMap<[Entity; 2], Listed>,
     next_contact: u64,
     /// Entities that were warned of because they are silent; none: the world.
-    told: HashSet<Option<Entity>>,
+    vec3: HashSet<Option<Entity>>,
 }
 
 #[derive(Default)]
@@ -84,7 +84,7 @@ fn own(v: Vec3) -> Vector {
 }
 
 /// A vector of the rules'.
-fn told(v: Vector) -> Vec3 {
+fn vec3(v: Vector) -> Vec3 {
     Vec3::from_array(v.to_array())
 }
 
@@ -98,7 +98,7 @@ fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
         for point in &manifold.points {
             let overlaps = f32::from(u8::from(nominal_n_s > 0.0 && point.penetration >= 0.0));
             let weight = if nominal_n_s > 0.0 { overlaps } else { point.normal_impulse };
-            points.add(told(point.point));
+            points.add(vec3(point.point));
             point_m += point.point * weight;
             normal += manifold.normal * weight;
             impulse_n_s += weight;
@@ -107,8 +107,8 @@ fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
         restitution = restitution.max(manifold.restitution);
     }
     (impulse_n_s > 0.0).then(|| Solved {
-        point_m: told(point_m / impulse_n_s),
-        normal: told(normal.normalize_or_zero()),
+        point_m: vec3(point_m / impulse_n_s),
+        normal: vec3(normal.normalize_or_zero()),
         impulse_n_s: if nominal_n_s > 0.0 { nominal_n_s } else { impulse_n_s / COUNTED },
         restitution,
         closing_m_s,
@@ -136,9 +136,9 @@ impl Side for ColliderSide<'_, '_, '_> {
         let Some(body) = self.body else { return Motion::default() };
         let centre_m = body.position.0 + body.rotation.0 * body.center_of_mass.0;
         Motion {
-            linear_m_s: told(body.linear_velocity.0),
-            angular_rad_s: told(body.angular_velocity.0),
-            centre_m: told(centre_m),
+            linear_m_s: vec3(body.linear_velocity.0),
+            angular_rad_s: vec3(body.angular_velocity.0),
+            centre_m: vec3(centre_m),
         }
     }
 
@@ -153,8 +153,8 @@ impl Side for ColliderSide<'_, '_, '_> {
         mobility_per_kg(
             point_m - self.motion().centre_m,
             along,
-            |v| told(inverse_mass * own(v)),
-            |turn| told(inverse_inertia * own(turn)),
+            |v| vec3(inverse_mass * own(v)),
+            |turn| vec3(inverse_inertia * own(turn)),
         )
     }
 
@@ -162,7 +162,7 @@ impl Side for ColliderSide<'_, '_, '_> {
         let shape = self.collider.shape_scaled();
         let ball = shape.as_ball().map(|ball| ball.radius);
         let own = ball.or(shape.as_capsule().map(|capsule| capsule.radius)).map(f64::from);
-        let rolls = own.or_else(|| axis_radius_m(self.axis()?, told(self.position), point_m, normal))?;
+        let rolls = own.or_else(|| axis_radius_m(self.axis()?, vec3(self.position), point_m, normal))?;
         Some(self.is.radius_m.unwrap_or(rolls))
     }
 
@@ -177,20 +177,20 @@ impl Side for ColliderSide<'_, '_, '_> {
             None if shape.as_cylinder().is_some() || shape.as_cone().is_some() => Vector::Y,
             None => return None,
         };
-        let axis = told(self.rotation * own_axis).normalize_or_zero();
+        let axis = vec3(self.rotation * own_axis).normalize_or_zero();
         (axis != Vec3::ZERO).then_some(axis)
     }
 
     fn belt_m_s(&self) -> Vec3 {
-        told(self.rotation * Vector::from_array(self.is.belt_m_s))
+        vec3(self.rotation * Vector::from_array(self.is.belt_m_s))
     }
 
     fn place_m(&self, point_m: Vec3) -> Vec3 {
-        told(self.rotation.inverse() * (own(point_m) - self.position))
+        vec3(self.rotation.inverse() * (own(point_m) - self.position))
     }
 
     fn direction(&self, along: Vec3) -> Vec3 {
-        told(self.rotation.inverse() * own(along))
+        vec3(self.rotation.inverse() * own(along))
     }
 
     fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace> {
@@ -223,7 +223,7 @@ fn listen(
     mut listener: ResMut<Listener>,
     mut touch: ResMut<Touch>,
 ) {
-    let Listener { probes, pairs, next_contact, told: warned } = &mut *listener;
+    let Listener { probes, pairs, next_contact, vec3: warned } = &mut *listener;
     let gravity_m_s2 = gravity.0.length();
     if gravity_m_s2 > ODD_GRAVITY_M_S2 && warned.insert(None) {
         log::warn!("asperity: {}", Notice::Gravity { m_s2: gravity_m_s2 });

@@ -114,7 +114,7 @@ sized!(asp_event, [offset_of!(asp_event, slip_m_s)], |zeroed| Self {
     ..zeroed
 });
 
-fn told(number: f64) -> Option<f64> {
+fn unless_nan(number: f64) -> Option<f64> {
     Some(number).filter(|number| !number.is_nan())
 }
 
@@ -130,7 +130,8 @@ impl asp_event {
         Ok(match self.kind {
             ASP_BEGIN => ContactEvent::begin_with(contact, self.touching()?, self.sample()),
             ASP_MOVE => {
-                let emphasis = Emphasis { gain: told(self.gain), importance: told(self.importance) };
+                let emphasis =
+                    Emphasis { gain: unless_nan(self.gain), importance: unless_nan(self.importance) };
                 ContactEvent::moved_with(contact, self.sample(), emphasis)
             }
             ASP_END => ContactEvent::end(contact),
@@ -143,7 +144,7 @@ impl asp_event {
     }
 
     fn sample(&self) -> ContactSample {
-        let depth_m = told(self.depth_m);
+        let depth_m = unless_nan(self.depth_m);
         ContactSample {
             uv: self.uv,
             velocity_m_s: all_told(self.velocity_m_s),
@@ -156,8 +157,8 @@ impl asp_event {
             closing_m_s: self.closing_m_s,
             at_m: all_told(self.at_m),
             depth_m,
-            slip_m_s: told(self.slip_m_s),
-            roll_radius_m: told(self.roll_radius_m),
+            slip_m_s: unless_nan(self.slip_m_s),
+            roll_radius_m: unless_nan(self.roll_radius_m),
         }
     }
 
@@ -165,7 +166,9 @@ impl asp_event {
         let mut touching = Touching::on(SurfaceId::from_bits(self.surface));
         (touching.actuator, touching.probe, touching.holder) =
             (self.actuator()?, self.probe(), self.holder());
-        Ok(touching.gain(told(self.gain).unwrap_or(1.0)).importance(told(self.importance).unwrap_or(1.0)))
+        Ok(touching
+            .gain(unless_nan(self.gain).unwrap_or(1.0))
+            .importance(unless_nan(self.importance).unwrap_or(1.0)))
     }
 
     fn impact(&self) -> Result<Impact, Failure> {
@@ -182,7 +185,7 @@ impl asp_event {
             actuator: self.actuator()?,
             holder: self.holder(),
             probe: self.probe(),
-            gain: told(self.gain).unwrap_or(1.0),
+            gain: unless_nan(self.gain).unwrap_or(1.0),
             ..Impact::on(BodyId::from_bits(self.body))
         })
     }
@@ -221,13 +224,13 @@ impl asp_event {
                 (own.kind, own.contact, own.surface) = (ASP_BEGIN, contact.0, touching.surface.to_bits());
                 own.hand(touching.actuator, touching.holder, touching.probe);
                 (own.gain, own.importance) = (touching.gain, touching.importance);
-                own.tell(sample);
+                own.take_sample(sample);
             }
             ContactEvent::Moved { contact, sample, emphasis } => {
                 (own.kind, own.contact) = (ASP_MOVE, contact.0);
                 own.gain = emphasis.gain.unwrap_or(NOT_TOLD);
                 own.importance = emphasis.importance.unwrap_or(NOT_TOLD);
-                own.tell(sample);
+                own.take_sample(sample);
             }
             ContactEvent::End { contact } => (own.kind, own.contact) = (ASP_END, contact.0),
             ContactEvent::Impact(impact) => own.strike(impact),
@@ -243,7 +246,7 @@ impl asp_event {
         self.probe = probe.map_or(0, ProbeId::to_bits);
     }
 
-    fn tell(&mut self, sample: &ContactSample) {
+    fn take_sample(&mut self, sample: &ContactSample) {
         self.uv = sample.uv;
         self.velocity_m_s = sample.velocity_m_s.unwrap_or([NOT_TOLD; 2]);
         self.normal_force_n = sample.normal_force_n;

@@ -223,10 +223,10 @@ pub unsafe extern "C" fn asp_pairs_step(
         let mut contacts: Vec<Contact> = touches.iter().map(contact).collect();
         let mut half = SCENES.hold(scene as usize)?;
         *last_s = Some(time_s);
-        let mut told = Vec::new();
-        world.step((colliders, &placed), &mut contacts, (*probes, step_s as f32), &mut told);
+        let mut reported = Vec::new();
+        world.step((colliders, &placed), &mut contacts, (*probes, step_s as f32), &mut reported);
         let mut first = None;
-        for (at, event) in (0..).zip(told) {
+        for (at, event) in (0..).zip(reported) {
             match half.scene.report(time_s, event) {
                 Ok(()) => *taken += 1,
                 Err(error) => drop(first.get_or_insert_with(|| refusal(at, &error.reason))),

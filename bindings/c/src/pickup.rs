@@ -105,12 +105,12 @@ pub unsafe extern "C" fn asp_pickup_motion(
     motion: *const asp_motion,
 ) -> i32 {
     enter(|| {
-        let told = *out(motion.cast_mut(), "motion")?;
+        let given = *out(motion.cast_mut(), "motion")?;
         let motion = RigidMotion {
-            acceleration_m_s2: told.acceleration_m_s2,
-            gravity_m_s2: told.gravity_m_s2,
-            angular_velocity_rad_s: told.angular_velocity_rad_s,
-            centre_m: told.centre_m,
+            acceleration_m_s2: given.acceleration_m_s2,
+            gravity_m_s2: given.gravity_m_s2,
+            angular_velocity_rad_s: given.angular_velocity_rad_s,
+            centre_m: given.centre_m,
         };
         let event = ContactEvent::Motion { body: BodyId::from_bits(body), motion };
         let mut half = SCENES.hold(scene as usize)?;

@@ -201,12 +201,12 @@ pub unsafe extern "C" fn asp_get_player_report(
 ) -> i32 {
     enter(|| {
         let player = PLAYERS.hold(player as usize)?;
-        let told = match player.playing() {
+        let counted = match player.playing() {
             #[cfg(feature = "device")]
             Playing::Device(device) => of_device(device.report(), device.silent_because().is_some()),
             Playing::Silent { .. } => asp_player_report { silent: 1, ..sized::Sized32::initial() },
         };
-        sized::write(&told, report, "report")
+        sized::write(&counted, report, "report")
     })
 }
 
@@ -231,7 +231,7 @@ pub unsafe extern "C" fn asp_player_stop(player: *mut asp_player, report: *mut a
         if player.is_null() {
             return Ok(());
         }
-        let told = match PLAYERS.remove(player as usize)?.into_playing()? {
+        let counted = match PLAYERS.remove(player as usize)?.into_playing()? {
             #[cfg(feature = "device")]
             Playing::Device(device) => {
                 let silent = device.silent_because().is_some();
@@ -249,6 +249,6 @@ pub unsafe extern "C" fn asp_player_stop(player: *mut asp_player, report: *mut a
                 }
             }
         };
-        if report.is_null() { Ok(()) } else { sized::write(&told, report, "report") }
+        if report.is_null() { Ok(()) } else { sized::write(&counted, report, "report") }
     })
 }

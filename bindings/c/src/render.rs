@@ -225,7 +225,7 @@ pub unsafe extern "C" fn asp_signals(
     sample_rate_hz: *mut f64,
     latency_samples: *mut u32,
 ) -> i32 {
-    fn tell<T>(place: *mut T, value: T, name: &str) -> Result<(), Failure> {
+    fn write_to<T>(place: *mut T, value: T, name: &str) -> Result<(), Failure> {
         if !place.is_null() {
             *out(place, name)? = value;
         }
@@ -234,10 +234,10 @@ pub unsafe extern "C" fn asp_signals(
     enter(|| {
         let half = RENDERERS.hold(renderer as usize)?;
         let Some(renderer) = &half.renderer else { return Err(moved()) };
-        tell(haptic_channels, renderer.haptic_channels() as u32, "haptic_channels")?;
-        tell(audio_buses, renderer.audio_buses() as u32, "audio_buses")?;
-        tell(sample_rate_hz, renderer.sample_rate_hz(), "sample_rate_hz")?;
-        tell(latency_samples, renderer.latency_samples() as u32, "latency_samples")
+        write_to(haptic_channels, renderer.haptic_channels() as u32, "haptic_channels")?;
+        write_to(audio_buses, renderer.audio_buses() as u32, "audio_buses")?;
+        write_to(sample_rate_hz, renderer.sample_rate_hz(), "sample_rate_hz")?;
+        write_to(latency_samples, renderer.latency_samples() as u32, "latency_samples")
     })
 }
 

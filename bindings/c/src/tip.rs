@@ -59,10 +59,10 @@ pub unsafe extern "C" fn asp_tip_new(
         let half = SCENES.hold(scene as usize)?;
         let rectangles = half.scene.tip_surfaces(&surfaces).map_err(|error| refused(&error))?;
         let mut coupling = TipCoupling::default();
-        let told = |number: f64, usual: f64| if number.is_nan() { usual } else { number };
-        coupling.stiffness_n_m = told(stiffness_n_m, coupling.stiffness_n_m);
-        coupling.mass_kg = told(mass_kg, coupling.mass_kg);
-        coupling.max_force_n = told(max_force_n, coupling.max_force_n);
+        let or_usual = |number: f64, usual: f64| if number.is_nan() { usual } else { number };
+        coupling.stiffness_n_m = or_usual(stiffness_n_m, coupling.stiffness_n_m);
+        coupling.mass_kg = or_usual(mass_kg, coupling.mass_kg);
+        coupling.max_force_n = or_usual(max_force_n, coupling.max_force_n);
         let made = Tip::new(rectangles, coupling).map_err(refuse)?;
         *tip = TIPS.insert(TrackedTip { tip: made, surfaces })? as *mut asp_tip;
         Ok(())

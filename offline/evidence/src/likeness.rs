@@ -80,13 +80,13 @@ impl Impression {
         let tiles = Borders::Detect.decide(map) == Borders::Periodic;
         let percepts = percepts(map, tiles, size, count, seed)?;
         let features = percepts.first().map_or(0, |percept| percept.features.len());
-        let told = |feature: usize| {
+        let moments = |feature: usize| {
             let values = || percepts.iter().map(|percept| percept.features[feature].value);
             let mean = values().sum::<f64>() / count as f64;
             let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64;
             [mean, variance, percepts[0].features[feature].sd]
         };
-        Ok(Self { features: (0..features).map(told).collect() })
+        Ok(Self { features: (0..features).map(moments).collect() })
     }
 
     /// d′ between two surfaces.
@@ -121,11 +121,11 @@ mod tests {
     fn below_every_threshold_the_observer_sees_one_surface() {
         let size = Size { texel_m: 1.5e-4, relief_m: 1e-7 };
         let strokes = |period, seed| percepts(&grid(period, 1.0), true, size, 60, seed).unwrap();
-        let told = right_answers(&strokes(16.0, 1), &strokes(8.0, 2));
-        assert!((told - 0.5).abs() < 0.13, "{told}");
+        let share = right_answers(&strokes(16.0, 1), &strokes(8.0, 2));
+        assert!((share - 0.5).abs() < 0.13, "{share}");
         let levels = |period, seed| abx::strokes(&grid(period, 1.0), true, size, 60, seed).unwrap();
-        let told = abx::right_answers(&levels(16.0, 1), &levels(8.0, 2));
-        assert!(told > 0.9, "{told}");
+        let share = abx::right_answers(&levels(16.0, 1), &levels(8.0, 2));
+        assert!(share > 0.9, "{share}");
     }
 
     #[test]

@@ -122,8 +122,8 @@ impl ForceRows {
     pub fn new(rate_hz: f64, sample_rate_hz: f64, contacts: usize) -> Self {
         let ticks_a_sample = rate_hz / sample_rate_hz;
         // Closed at least once a block; what comes meanwhile reaches 4 ticks either way.
-        let told = (2.0 * MAX_BLOCK as f64 * ticks_a_sample).ceil() as u64;
-        let span = (2 * LAG_TICKS + told + 4).next_power_of_two();
+        let reported = (2.0 * MAX_BLOCK as f64 * ticks_a_sample).ceil() as u64;
+        let span = (2 * LAG_TICKS + reported + 4).next_power_of_two();
         let rows = || vec![OpenRow::EMPTY; span as usize].into_boxed_slice();
         let kernel = (0..=LAG_TICKS as usize * STEPS + 1).map(|i| kernel(i as f64 / STEPS as f64)).collect();
         let mut spare = Vec::with_capacity(contacts + 1);
@@ -207,17 +207,17 @@ impl ForceRows {
     fn close_tick(&mut self, tick: u64, row: &mut impl FnMut(ForceRow)) {
         let at = (tick & (self.span - 1)) as usize;
         let of_tick = |track: &&Track| track.open[0] == tick && track.rows[at].is_told;
-        let told = || self.tracks.iter().filter(of_tick);
-        for track in told() {
+        let reported = || self.tracks.iter().filter(of_tick);
+        for track in reported() {
             row(ForceRow { tick, of: Of::Contact(track.contact), force_n: track.rows[at].force_n() });
         }
-        for (index, track) in told().enumerate() {
+        for (index, track) in reported().enumerate() {
             let Some(hand) = track.actuator else { continue };
             let felt_by_hand = |track: &&Track| track.actuator == Some(hand);
-            if told().take(index).any(|track| felt_by_hand(&track)) {
+            if reported().take(index).any(|track| felt_by_hand(&track)) {
                 continue;
             }
-            let rows = || told().skip(index).filter(felt_by_hand).map(|track| &track.rows[at]);
+            let rows = || reported().skip(index).filter(felt_by_hand).map(|track| &track.rows[at]);
             let forces_n = rows().map(OpenRow::force_n);
             let force_n = forces_n.fold([0.0; 3], |a, b| std::array::from_fn(|axis| a[axis] + b[axis]));
             let cap_n = rows().fold(f64::INFINITY, |cap_n, row| cap_n.min(row.cap_n));
@@ -274,12 +274,12 @@ mod tests {
         force: impl Fn(f64) -> [f64; 3],
     ) -> Vec<ForceRow> {
         let mut rows = ForceRows::new(rate_hz, sample_rate_hz, 2);
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         let mut first_sample = 0;
         while first_sample < (0.5 * sample_rate_hz) as u64 {
             let at = |i: usize| force((first_sample + i as u64) as f64 / sample_rate_hz);
             let force_n: Vec<[f64; 3]> = (0..64).map(at).collect();
-            rows.close(first_sample, |row| told.push(row));
+            rows.close(first_sample, |row| reported.push(row));
             rows.add(&ContactBlock {
                 first_sample,
                 contact: ContactId(7),
@@ -294,9 +294,9 @@ mod tests {
             });
             first_sample += 64;
         }
-        rows.close(u64::MAX, |row| told.push(row));
-        told.retain(|row| row.of == Of::Contact(ContactId(7)));
-        told
+        rows.close(u64::MAX, |row| reported.push(row));
+        reported.retain(|row| row.of == Of::Contact(ContactId(7)));
+        reported
     }
 
     #[test]
@@ -304,8 +304,8 @@ mod tests {
         for (rate_hz, sample_rate_hz) in [(1000.0, 44_100.0), (5000.0, 22_050.0), (5000.0, 192_000.0)] {
             let worst = |cycles: f64, aside: bool| {
                 let tone = |t: f64| (std::f64::consts::TAU * cycles * rate_hz * t + 0.3).sin();
-                let told = rows(rate_hz, sample_rate_hz, tone);
-                let inner = told.iter().filter(|row| row.tick > 8 && (row.tick as f64) < 0.49 * rate_hz);
+                let reported = rows(rate_hz, sample_rate_hz, tone);
+                let inner = reported.iter().filter(|row| row.tick > 8 && (row.tick as f64) < 0.49 * rate_hz);
                 inner.fold(0.0f64, |worst, row| {
                     let wanted = if aside { 0.0 } else { tone(row.tick as f64 / rate_hz) };
                     worst.max((row.force_n[0] - wanted).abs())
@@ -321,10 +321,10 @@ mod tests {
     #[test]
     fn a_constant_force_is_itself_from_the_first_row_to_the_last() {
         for sample_rate_hz in [8_000.0, 44_100.0, 96_000.0] {
-            let told = rows(1000.0, sample_rate_hz, |_| 0.25);
-            assert!((500..=512).contains(&told.len()), "{} rows", told.len());
-            assert!(told.windows(2).all(|pair| pair[0].tick + 1 == pair[1].tick));
-            assert!(told.iter().all(|row| {
+            let reported = rows(1000.0, sample_rate_hz, |_| 0.25);
+            assert!((500..=512).contains(&reported.len()), "{} rows", reported.len());
+            assert!(reported.windows(2).all(|pair| pair[0].tick + 1 == pair[1].tick));
+            assert!(reported.iter().all(|row| {
                 (row.force_n[0] - 0.25).abs() < 1e-12 && (row.force_n[2] - 1.0).abs() < 1e-12
             }));
         }
@@ -335,20 +335,20 @@ mod tests {
         for (rate_hz, sample_rate_hz) in [(1000.0, 44_100.0), (5000.0, 22_050.0), (2000.0, 96_000.0)] {
             // It comes down at 0.1 s on what gives 20 N at most, and leaves from 0.3 to 0.4 s.
             let down = |t: f64| (0.1..0.3).contains(&t) || t >= 0.4;
-            let told =
+            let reported =
                 pushed(rate_hz, sample_rate_hz, 20.0, |t| if down(t) { [12.0, 0.0, 16.0] } else { [0.0; 3] });
             let size_n = |row: &ForceRow| row.force_n[0].hypot(row.force_n[2]);
-            let most_n = told.iter().map(size_n).fold(0.0, f64::max);
+            let most_n = reported.iter().map(size_n).fold(0.0, f64::max);
             assert!((20.0 - 1e-12..=20.0 + 1e-12).contains(&most_n), "{most_n} N");
             let time_s = |row: &ForceRow| row.tick as f64 / rate_hz;
             let in_the_air = |row: &&ForceRow| {
                 let t = time_s(row);
                 t < 0.1 || (0.3 + 4.0 / rate_hz..0.4).contains(&t)
             };
-            assert!(told.iter().filter(in_the_air).count() as f64 > 0.18 * rate_hz);
-            assert!(told.iter().filter(in_the_air).all(|row| row.force_n == [0.0; 3]));
+            assert!(reported.iter().filter(in_the_air).count() as f64 > 0.18 * rate_hz);
+            assert!(reported.iter().filter(in_the_air).all(|row| row.force_n == [0.0; 3]));
             // What touches is reported at once.
-            let touch = told.iter().find(|row| time_s(row) >= 0.1 + 1.0 / rate_hz).unwrap();
+            let touch = reported.iter().find(|row| time_s(row) >= 0.1 + 1.0 / rate_hz).unwrap();
             assert!(size_n(touch) > 15.0, "{touch:?}");
         }
     }
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn several_contacts_give_a_hand_no_more_than_its_device() {
         let mut rows = ForceRows::new(1000.0, 44_100.0, 2);
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for cell in 0..40 {
             for contact in 0..2 {
                 rows.add(&ContactBlock {
@@ -372,9 +372,9 @@ mod tests {
                     cap_n: &[20.0; 64],
                 });
             }
-            rows.close(64 * (cell + 1), |row| told.push(row));
+            rows.close(64 * (cell + 1), |row| reported.push(row));
         }
-        let of = |of: Of| told.iter().filter(move |row| row.of == of);
+        let of = |of: Of| reported.iter().filter(move |row| row.of == of);
         assert!(of(Of::Contact(ContactId(1))).all(|row| (row.force_n[2] - 15.0).abs() < 1e-12));
         assert!(of(Of::Hand(ChannelId(3))).count() > 20);
         assert!(of(Of::Hand(ChannelId(3))).all(|row| (row.force_n[2] - 20.0).abs() < 1e-12));

@@ -214,7 +214,7 @@ mod tests {
     }
 
     /// Events of steps in which the second of two moves so fast, pressed with a force.
-    fn told(steps: &[([f32; 3], f32)], order: [u32; 2]) -> Vec<Vec<ContactEvent>> {
+    fn stepped(steps: &[([f32; 3], f32)], order: [u32; 2]) -> Vec<Vec<ContactEvent>> {
         let mut scene = Config::default().build().unwrap().scene;
         let probes = Probes::add(&mut scene).unwrap();
         let colliders = [collider(0.0, true), collider(50.0, false)];
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn a_ball_that_lands_strikes_once_with_its_speed_and_mass() {
         let steps = [([0.0, 0.0, -1.0], 0.0), ([0.0, 0.0, -1.0], 3.0), ([0.0; 3], 1.0), ([0.0; 3], 0.2)];
-        let events = told(&steps, [0, 1]).concat();
+        let events = stepped(&steps, [0, 1]).concat();
         let [ContactEvent::Impact(impact)] = events[..] else { panic!("{events:?}") };
         assert_eq!((impact.speed_m_s, impact.radius_m), (1.0, 0.01));
         assert!((impact.mass_kg - 0.02).abs() < 1e-7);
@@ -253,7 +253,7 @@ mod tests {
     fn what_slides_begins_moves_and_ends_whichever_comes_first_in_its_pair() {
         let mut steps = vec![([0.1, 0.0, 0.0], 0.5); 3];
         steps.push(([0.1, 0.0, 0.0], 0.0));
-        let both = [[0, 1], [1, 0]].map(|order| told(&steps, order));
+        let both = [[0, 1], [1, 0]].map(|order| stepped(&steps, order));
         assert_eq!(both[0], both[1]);
         let [begin, _, moved, end] = &both[0][..] else { panic!() };
         assert!(matches!(begin[..], [ContactEvent::Begin { .. }]));
@@ -266,6 +266,6 @@ mod tests {
 
     #[test]
     fn what_rests_is_silent() {
-        assert!(told(&[([0.0; 3], 0.5); 20], [0, 1]).concat().is_empty());
+        assert!(stepped(&[([0.0; 3], 0.5); 20], [0, 1]).concat().is_empty());
     }
 }

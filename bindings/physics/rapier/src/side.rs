@@ -1,7 +1,7 @@
 //! One of the two of a pair, as rapier knows it.
 
 use crate::thing::{Thing, axis, rolls_m};
-use crate::vector::{own, told};
+use crate::vector::{own, vec3};
 use crate::view::View;
 use asperity::UvPlace;
 use asperity_pairs::{Motion, Side, Vec3, mobility_per_kg};
@@ -37,12 +37,12 @@ impl Side for ColliderSide<'_> {
     fn mobility_per_kg(&self, point_m: Vec3, along: Vec3) -> f32 {
         let Some(body) = self.dynamic() else { return 0.0 };
         let properties = body.mass_properties();
-        let arm_m = point_m - told(body.center_of_mass());
+        let arm_m = point_m - vec3(body.center_of_mass());
         mobility_per_kg(
             arm_m,
             along,
-            |v| told(properties.effective_inv_mass * own(v)),
-            |turn| told(properties.effective_world_inv_inertia * own(turn)),
+            |v| vec3(properties.effective_inv_mass * own(v)),
+            |turn| vec3(properties.effective_world_inv_inertia * own(turn)),
         )
     }
 
@@ -59,15 +59,15 @@ impl Side for ColliderSide<'_> {
     }
 
     fn belt_m_s(&self) -> Vec3 {
-        told(self.collider.position().rotation * self.thing.belt_m_s)
+        vec3(self.collider.position().rotation * self.thing.belt_m_s)
     }
 
     fn place_m(&self, point_m: Vec3) -> Vec3 {
-        told(self.collider.position().inverse() * own(point_m))
+        vec3(self.collider.position().inverse() * own(point_m))
     }
 
     fn direction(&self, along: Vec3) -> Vec3 {
-        told(self.collider.position().rotation.inverse() * own(along))
+        vec3(self.collider.position().rotation.inverse() * own(along))
     }
 
     fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace> {

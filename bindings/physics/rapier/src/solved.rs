@@ -1,6 +1,6 @@
 //! A contact as the solver left it: the impulse-weighted mean of a pair's points.
 
-use crate::vector::told;
+use crate::vector::vec3;
 use crate::view::View;
 use asperity_pairs::{Motion, Points, Solved};
 use rapier3d::prelude::*;
@@ -22,7 +22,7 @@ pub(crate) fn solved(
         let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
         for contact in &manifold.points {
             let impulse = pushed_n_s(&contact.data);
-            points.add(told(place * contact.local_p1));
+            points.add(vec3(place * contact.local_p1));
             point_m += place * contact.local_p1 * impulse;
             normal += manifold.data.normal * impulse;
             impulse_n_s += impulse;
@@ -32,10 +32,10 @@ pub(crate) fn solved(
     if impulse_n_s <= 0.0 {
         return overlapping(pair, view, nominal_n);
     }
-    let (point_m, normal) = (told(point_m / impulse_n_s), told(normal.normalize_or_zero()));
+    let (point_m, normal) = (vec3(point_m / impulse_n_s), vec3(normal.normalize_or_zero()));
     let gained_m_s = [pair.collider1, pair.collider2].map(|collider| {
         let body = view.body_of(collider).filter(|body| body.is_dynamic());
-        told(view.gravity * (body.map_or(0.0, |body| body.gravity_scale()) * view.step_s))
+        vec3(view.gravity * (body.map_or(0.0, |body| body.gravity_scale()) * view.step_s))
     });
     let closing_m_s = Solved::closing_m_s(before, gained_m_s, point_m, normal);
     Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s, is_nominal: false, points })
@@ -56,15 +56,15 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
     for manifold in manifolds(pair) {
         let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
         for contact in manifold.points.iter().filter(|contact| contact.dist <= 0.0) {
-            points.add(told(place * contact.local_p1));
+            points.add(vec3(place * contact.local_p1));
             point_m += place * contact.local_p1;
             normal += place.rotation * manifold.local_n1;
             count += 1.0;
         }
     }
     (count > 0.0).then(|| Solved {
-        point_m: told(point_m / count),
-        normal: told(normal.normalize_or_zero()),
+        point_m: vec3(point_m / count),
+        normal: vec3(normal.normalize_or_zero()),
         impulse_n_s,
         restitution: 0.0,
         closing_m_s: 0.0,

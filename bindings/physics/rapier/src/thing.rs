@@ -1,7 +1,7 @@
 //! A collider to asperity: what it is made of, what rings, what can be stroked on it, and who feels
 //! it.
 
-use crate::vector::{own, told};
+use crate::vector::{own, vec3};
 use asperity::{BodyId, ChannelId, Material, ProbeId, SurfaceId, UvMapping, UvPlace, UvTriangle};
 use asperity_pairs::{NOMINAL_FORCE_N, Vec3, axis_radius_m};
 use rapier3d::parry::query::PointQueryWithLocation;
@@ -180,7 +180,7 @@ pub(crate) fn axis(collider: &Collider) -> Option<Vec3> {
         Cylinder | Cone | RoundCylinder | RoundCone => Vector::Y,
         _ => return None,
     };
-    let axis = told(collider.position().rotation * own_axis).normalize_or_zero();
+    let axis = vec3(collider.position().rotation * own_axis).normalize_or_zero();
     (axis != Vec3::ZERO).then_some(axis)
 }
 
@@ -190,7 +190,7 @@ pub(crate) fn rolls_m(thing: &Thing, collider: &Collider, point_m: Vec3, normal:
     let shape = collider.shape();
     let ball = shape.as_ball().map(|ball| ball.radius);
     let own = ball.or(shape.as_capsule().map(|capsule| capsule.radius)).map(f64::from);
-    let middle_m = told(collider.position().translation);
+    let middle_m = vec3(collider.position().translation);
     let rolls = own.or_else(|| axis_radius_m(axis(collider)?, middle_m, point_m, normal))?;
     Some(thing.radius_m.unwrap_or(rolls))
 }

@@ -10,6 +10,6 @@ pub(crate) fn own(v: Vec3) -> Vector {
 }
 
 /// As the rules take it.
-pub(crate) fn told(v: Vector) -> Vec3 {
+pub(crate) fn vec3(v: Vector) -> Vec3 {
     Vec3::from_array(v.to_array())
 }

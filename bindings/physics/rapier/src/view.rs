@@ -1,6 +1,6 @@
 //! A view of a physics world: the sets that the adapter reads, whoever owns them.
 
-use crate::vector::told;
+use crate::vector::vec3;
 use asperity_pairs::Motion;
 use rapier3d::prelude::*;
 
@@ -34,9 +34,9 @@ impl<'a> From<&'a PhysicsWorld> for View<'a> {
 /// Motion of a rigid body.
 pub(crate) fn motion(body: &RigidBody) -> Motion {
     Motion {
-        linear_m_s: told(body.linvel()),
-        angular_rad_s: told(body.angvel()),
-        centre_m: told(body.center_of_mass()),
+        linear_m_s: vec3(body.linvel()),
+        angular_rad_s: vec3(body.angvel()),
+        centre_m: vec3(body.center_of_mass()),
     }
 }
 

@@ -71,8 +71,8 @@ fn limited_db(rng: &mut Rng, strokes: bool) -> f64 {
         for _ in 0..72 {
             adapter.before_step(&(&physics).into());
             physics.step();
-            let told = adapter.after_step(&(&physics).into()).into_iter();
-            for event in told.filter(|event| strokes || matches!(event, ContactEvent::Impact(_))) {
+            let reported = adapter.after_step(&(&physics).into()).into_iter();
+            for event in reported.filter(|event| strokes || matches!(event, ContactEvent::Impact(_))) {
                 scene.report(f64::from(steps) * STEP_S, event).unwrap();
             }
             steps += 1;

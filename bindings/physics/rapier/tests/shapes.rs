@@ -85,11 +85,11 @@ impl World {
 
     /// Velocity and uv of the last report.
     fn last(&self) -> ([f64; 2], [f64; 2]) {
-        let told = self.events.iter().rev().find_map(|event| match event {
+        let reported = self.events.iter().rev().find_map(|event| match event {
             ContactEvent::Moved { sample, .. } => Some((sample.velocity_m_s.unwrap(), sample.uv)),
             _ => None,
         });
-        told.expect("nothing moves")
+        reported.expect("nothing moves")
     }
 }
 
@@ -186,14 +186,16 @@ fn every_side_of_a_box_sounds_as_its_top() {
         for face in 0..3 {
             for sign in [-1.0, 1.0] {
                 for along in (0..3).filter(|along| *along != face) {
-                    let (level, told) = along_db(mapping.clone(), face, sign, along, 0.5);
-                    println!("face {face} {sign} along {along}: {level:.2} dB of {reference:.2}, {told:?}");
+                    let (level, reported) = along_db(mapping.clone(), face, sign, along, 0.5);
+                    println!(
+                        "face {face} {sign} along {along}: {level:.2} dB of {reference:.2}, {reported:?}"
+                    );
                     assert!(
                         (level - reference).abs() < 1.5,
                         "{face} {sign} {along}: {level} of {reference} dB"
                     );
-                    let axes = told.map(|v| (v.abs() > 0.4) as u8);
-                    assert_eq!(axes.iter().sum::<u8>(), 1, "goes along one of both axes: {told:?}");
+                    let axes = reported.map(|v| (v.abs() > 0.4) as u8);
+                    assert_eq!(axes.iter().sum::<u8>(), 1, "goes along one of both axes: {reported:?}");
                 }
             }
         }
@@ -273,8 +275,8 @@ fn a_hundred_tonnes_or_a_kilometre_a_second_is_not_refused() {
         world.run(1.0);
         assert_eq!(world.scene.stats().refused, 0, "{speed_m_s} m/s");
         assert!(!world.impacts().is_empty(), "{speed_m_s} m/s: no blow");
-        let told = world.scene.why_silent().iter().any(|reason| reason.to_string().contains("100 m/s"));
-        assert_eq!(told, speed_m_s > 100.0, "{speed_m_s} m/s: {:?}", world.scene.why_silent());
+        let reported = world.scene.why_silent().iter().any(|reason| reason.to_string().contains("100 m/s"));
+        assert_eq!(reported, speed_m_s > 100.0, "{speed_m_s} m/s: {:?}", world.scene.why_silent());
     }
 }
 
@@ -397,14 +399,14 @@ fn a_struck_plate_sounds_by_hand_in_middle_edge_and_corner() {
         let falling = at(x, 1.2, z).linvel(Vector::new(0.0, -2.0, 0.0));
         world.insert(falling, ball, Thing::of(Material::STEEL));
         world.run(0.6);
-        let told = world.impacts();
+        let reported = world.impacts();
         let Engine { mut scene, mut renderer, .. } = {
             let mut config = Config::default();
             (config.sample_rate_hz, config.audio[0].limit) = (48_000.0, false);
             config.build().unwrap()
         };
         let by_hand = scene.add_body(shaped_plate()).unwrap();
-        let impact = Impact { body: by_hand, at_m: None, direction: None, ..told[0] };
+        let impact = Impact { body: by_hand, at_m: None, direction: None, ..reported[0] };
         let impact = impact.at_m([f64::from(x), 0.01, f64::from(z)]);
         scene.report(0.0, ContactEvent::Impact(impact)).unwrap();
         let mut audio = vec![0.0; 28_800];
@@ -416,7 +418,7 @@ fn a_struck_plate_sounds_by_hand_in_middle_edge_and_corner() {
             10.0 * power.log10()
         };
         let (through, hand) = (level_db(&world.heard), level_db(&audio));
-        println!("({x}, {z}): {through:.3} dB, by hand {hand:.3}, {} blows", told.len());
+        println!("({x}, {z}): {through:.3} dB, by hand {hand:.3}, {} blows", reported.len());
         assert!((through - hand).abs() < 0.1, "({x}, {z}): {through} dB, by hand {hand}");
         levels.push(hand);
     }
@@ -489,11 +491,11 @@ fn whatever_scrapes_or_rolls_has_a_contact_or_says_why_not() {
             world.insert(body, collider, thing);
             let mut warned = Vec::new();
             for step in 0..60 {
-                let told = world.events.len();
+                let reported = world.events.len();
                 world.run(STEP_S);
                 // What has just struck leaves again, or slides from the next step on.
                 let is_impact = |event: &ContactEvent| matches!(event, ContactEvent::Impact(_));
-                let struck = world.events[told..].iter().any(is_impact);
+                let struck = world.events[reported..].iter().any(is_impact);
                 warned.extend(world.adapter.warnings().into_iter().map(|warning| warning.notice));
                 let silent = world.scene.why_silent();
                 for touch in world.adapter.touches().filter(|touch| touch.kind != Kind::Rests) {
