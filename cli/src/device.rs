@@ -1,6 +1,6 @@
 //! `asperity device SWEEP -o MY.toml`: the profile of an actuator from a recorded sweep.
 
-use crate::columns::{Columns, TIME, is_table};
+use crate::columns::{Columns, is_table};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use crate::progress::Progress;
@@ -66,7 +66,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 fn of_table(path: &Path) -> Result<Sweep, CliError> {
     let table = Columns::read(path)?;
     let rate_hz = table.rate_hz()?.ok_or_else(|| {
-        CliError::file(path, format!("has no column {TIME}"), "needs time_s, drive, acceleration_m_s2")
+        CliError::file(path, "has no column time_s", "needs time_s, drive, acceleration_m_s2")
     })?;
     let [drive, acceleration_m_s2] =
         [table.column("drive")?, table.column("acceleration_m_s2")?].map(<[f64]>::to_vec);

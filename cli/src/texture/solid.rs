@@ -8,6 +8,7 @@ use crate::arguments::{Words, one_of};
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::paths::ends_in;
+use asperity_plot::quantity;
 use asperity_surface::grating::{GratingKind, GratingParameters};
 use asperity_surface::raster::Raster;
 use asperity_surface::solid_materials::SolidMaterial;
@@ -97,6 +98,16 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         return write_baked(options, &heights, mesh, path);
     }
     let metres_per_px = options.width_m / size as f64;
+    if let Heights::Grating(grating) = &heights
+        && grating.pitch_m < 2.0 * metres_per_px
+    {
+        let what = format!(
+            "{} is finer than two texels of {}",
+            quantity(grating.pitch_m, "m"),
+            quantity(metres_per_px, "m")
+        );
+        return Err(CliError::new("--pitch-m", what, "give a smaller --width-m or a larger --size"));
+    }
     let heights_m = Raster::from_fn(size, size, |x, y| {
         let place = [(x as f64 + 0.5) * metres_per_px, (y as f64 + 0.5) * metres_per_px];
         match &heights {

@@ -119,6 +119,25 @@ fn curved_sheets_reach_the_least_energy_without_flips() {
 }
 
 #[test]
+fn a_cap_as_deep_as_it_is_wide_is_not_left_as_its_squeezed_first_guess() {
+    // A half sphere with a wall of its own radius, bent to one side.
+    let cap = |u: f64, v: f64| {
+        let (ring, angle) = (u.abs().max(v.abs()), v.atan2(u));
+        let way = ring * (0.5 * std::f64::consts::PI + 2.5);
+        let (out, up) = if way < 0.5 * std::f64::consts::PI {
+            (way.sin(), -way.cos())
+        } else {
+            (1.0, way - 0.5 * std::f64::consts::PI)
+        };
+        [0.05 * (out * angle.cos() + 0.1 * up * up), 0.05 * out * angle.sin(), 0.05 * up]
+    };
+    let mesh = sheet(40, cap);
+    let made = unwrap(&mesh, Method::Energy(PHI)).unwrap();
+    println!("{:?}", (made.energy, made.flipped, made.area_distortion));
+    assert!(made.energy < 0.6 * mesh.area_m2() && made.area_distortion.max < 4.0, "{made:?}");
+}
+
+#[test]
 fn lengths_alone_turn_triangles_over_where_areas_do_not() {
     let bump = |u: f64, v: f64| [0.1 * u, 0.1 * v, 0.12 * (-(u * u + v * v) / 0.08).exp()];
     let mesh = sheet(20, bump);

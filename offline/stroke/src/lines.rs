@@ -51,6 +51,8 @@ const BROKEN: f64 = 0.12;
 const SMEARED_DB: f64 = -5.0;
 /// Line over its third octave from which its phase is trusted, dB.
 const TRUSTED_DB: f64 = 0.0;
+/// Amplitude that a line gains by its own phase only where the speed wanders.
+const GAINED: f64 = 1.4;
 /// Lines that are reported.
 const MOST: usize = 12;
 
@@ -79,7 +81,7 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
     }
     // A smeared line breaks into peaks about its place.
     let about = |line: &Line| (line.period_m / found.lines[0].period_m - 1.0).abs() < BROKEN;
-    let is_broken = found.lines.iter().filter(|line| about(line)).count() >= 3;
+    let is_broken = found.lines.iter().filter(|line| about(line)).count() >= 2;
     let smeared = Lines { lines: Vec::new(), wander: 0.0, is_smeared: true };
     let Some(hump) = hump(&profile) else { return if is_broken { smeared } else { found } };
     let steady = found.lines.len() == 1
@@ -99,6 +101,10 @@ pub fn find(stroke: &Stroke, tool: &Tool) -> Lines {
     let lines = peaks(&followed);
     if lines.first().is_none_or(|line| (line.period_m / period_m - 1.0).abs() > 0.03) {
         return Lines { lines: Vec::new(), wander, is_smeared: true };
+    }
+    let same = found.lines.iter().filter(|line| (line.period_m / period_m - 1.0).abs() < BROKEN);
+    if lines[0].amplitude_m < GAINED * same.map(|line| line.amplitude_m).fold(0.0, f64::max) {
+        return found;
     }
     found.lines = lines;
     found.wander = wander;

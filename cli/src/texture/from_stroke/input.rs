@@ -1,7 +1,7 @@
 //! Recordings and what is known beside them, as files and options say it.
 
 use super::{Options, Unit};
-use crate::columns::{Columns, TIME, is_table};
+use crate::columns::{Columns, is_table, is_time};
 use crate::error::CliError;
 use asperity::files::scene_file::probe_of;
 use asperity::{ModalModel, Mode};
@@ -31,6 +31,8 @@ pub(super) struct NamedProbe {
 pub(super) struct Recorded {
     pub(super) strokes: Vec<Stroke>,
     pub(super) tangential_n: Option<Vec<f64>>,
+    /// Remarks on how files were read.
+    pub(super) remarks: Vec<String>,
 }
 
 /// The preset, or the probe of a file.
@@ -92,7 +94,7 @@ pub(super) fn colour(path: &Path) -> Result<Vec<(f64, f64)>, CliError> {
 
 /// All recordings.
 pub(super) fn strokes(options: &Options) -> Result<Recorded, CliError> {
-    let mut recorded = Recorded { strokes: Vec::new(), tangential_n: None };
+    let mut recorded = Recorded { strokes: Vec::new(), tangential_n: None, remarks: Vec::new() };
     let mut files = Vec::new();
     for path in &options.strokes {
         files.push(if is_table(path) {
@@ -106,8 +108,15 @@ pub(super) fn strokes(options: &Options) -> Result<Recorded, CliError> {
         let force = track(options.force.as_deref(), "force", "N", (index, files.len()), file)?;
         let (axes, rate_hz) = match file {
             File::Sound(_, (axes, rate_hz)) => (axes.clone(), *rate_hz),
-            File::Table(path, table) => (axes(options, path, table)?, rate(options, path, table)?),
+            File::Table(path, table) => {
+                (axes(options, path, table, &mut recorded.remarks)?, rate(options, path, table)?)
+            }
         };
+        if options.unit.is_none() && options.ring.is_none() && (0.9..1.1).contains(&pull(&axes)) {
+            recorded
+                .remarks
+                .push("the mean of the three axes is 1, as gravity's is in g (--unit g)".to_owned());
+        }
         let unit = match options.unit {
             Some(Unit::G) => G_M_S2,
             Some(Unit::Um) => 1e-6,
@@ -184,26 +193,49 @@ fn track(
     }
 }
 
+/// Length of the mean of three axes; 0 of fewer, which tell no direction.
+fn pull(axes: &[Vec<f64>]) -> f64 {
+    let mean = |axis: &Vec<f64>| axis.iter().sum::<f64>() / axis.len().max(1) as f64;
+    if axes.len() < MOST_AXES { 0.0 } else { axes.iter().map(|axis| mean(axis).powi(2)).sum::<f64>().sqrt() }
+}
+
 /// Columns of the recording.
-fn axes(options: &Options, path: &Path, table: &Columns) -> Result<Vec<Vec<f64>>, CliError> {
+fn axes(
+    options: &Options,
+    path: &Path,
+    table: &Columns,
+    remarks: &mut Vec<String>,
+) -> Result<Vec<Vec<f64>>, CliError> {
     if !options.columns.is_empty() {
         return options.columns.iter().map(|name| table.column(name.trim()).map(<[f64]>::to_vec)).collect();
     }
-    let other =
-        [Some(TIME), options.speed.as_deref(), options.force.as_deref(), options.tangential.as_deref()];
-    let free: Vec<usize> =
-        (0..table.names.len()).filter(|i| !other.contains(&Some(table.names[*i].as_str()))).collect();
+    let other = [&options.speed, &options.force, &options.tangential].map(Option::as_deref);
+    let names = table.names.iter().map(String::as_str).enumerate();
+    let free: Vec<(usize, &str)> =
+        names.filter(|(_, name)| !is_time(name) && !other.contains(&Some(*name))).collect();
     if free.is_empty() || free.len() > MOST_AXES {
         let what = format!("{} columns could be the recording: {}", free.len(), table.names.join(", "));
         return Err(CliError::file(path, what, "name them with --columns"));
     }
-    Ok(free.into_iter().map(|i| table.values[i].clone()).collect())
+    if free.len() > 1 {
+        let names = free.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", ");
+        remarks.push(format!("{names}: axes of one recording, folded by power (--columns names others)"));
+    }
+    Ok(free.into_iter().map(|(i, _)| table.values[i].clone()).collect())
 }
 
 /// Rate of a table, Hz.
 fn rate(options: &Options, path: &Path, table: &Columns) -> Result<f64, CliError> {
-    table
-        .rate_hz()?
-        .or(options.rate)
-        .ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"))
+    let (own, told) = (table.rate_hz()?, options.rate);
+    if let (Some(own), Some(told)) = (own, told)
+        && (own / told - 1.0).abs() > 0.05
+    {
+        let what = format!("its times tell {own:.4} Hz, --rate {told} Hz");
+        return Err(CliError::file(
+            path,
+            what,
+            "times must be in seconds; leave out --rate, or name the columns",
+        ));
+    }
+    own.or(told).ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"))
 }

@@ -118,8 +118,10 @@ fn found(options: &Options, fit_options: &FitOptions) -> Result<StrokeSurface, C
         let models = models::read(&text).map_err(at)?;
         return surface::fit_models(&models, fit_options).map_err(at);
     }
-    let Recorded { strokes, tangential_n } = input::strokes(options)?;
-    surface::fit(&strokes, tangential_n.as_deref(), fit_options).map_err(at)
+    let Recorded { strokes, tangential_n, remarks } = input::strokes(options)?;
+    let mut found = surface::fit(&strokes, tangential_n.as_deref(), fit_options).map_err(at)?;
+    found.warnings.splice(0..0, remarks);
+    Ok(found)
 }
 
 fn write(
