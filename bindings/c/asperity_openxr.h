@@ -20,10 +20,10 @@
  *     ...
  *     asp_xr_tick(&right, seconds);                          // every frame, on the thread that calls OpenXR
  *
- * A stream begins with the first point that is felt, whose level the first frame holds for as long as the runtime wants its first frame to
- * be; later points lag by that. A waveform begins with 20 ms of silence, which carry it over frames that come late. Both end after 0.1 s of
- * silence. What cannot be played is counted: `unfocused` while the session has no focus, `dropped` where the port's reader came too late or the
- * engine's clock runs ahead of the runtime's. */
+ * A stream begins with the first point that is felt; the first frame is as long as the runtime wants it to be and silent until that point,
+ * with which it ends; everything lags by that. A waveform begins with 20 ms of silence, which carry it over frames that come late. Both end
+ * after 0.1 s of silence. What cannot be played is counted: `unfocused` while the session has no focus, `dropped` where the port's reader
+ * came too late or the engine's clock runs ahead of the runtime's. */
 #ifndef ASPERITY_OPENXR_H
 #define ASPERITY_OPENXR_H
 
@@ -110,6 +110,7 @@ typedef struct asp_xr_hand {
     uint64_t first_tick;
     double began_s;
     XrDuration last_ns, silent_since_ns;
+    float tone; /* of the point before */
     uint64_t lost_before;
     /* Counts: calls, points (of a waveform: samples) played, those of silence that need no call, and what was not played. */
     uint64_t calls, played, silent, unfocused, dropped, refused;
@@ -231,16 +232,18 @@ static inline XrResult asp_xr_stream(asp_xr_hand *hand, const asp_point *points,
         int felt = level >= hand->floor;
         if (!hand->streams && type != ASP_XR_FIRST) {
             if (!felt) {
-                hand->silent++;
+                hand->silent++, hand->tone = tone;
                 continue;
             }
             type = ASP_XR_FIRST;
             hand->first_tick = points[at].tick, hand->began_s = now_s;
             hand->silent_since_ns = 0;
+            levels[0].value = levels[1].value = 0.0f, levels[2].value = level;
+            tones[0].value = tones[1].value = hand->tone, tones[2].value = tone;
             levels[0].time = tones[0].time = 0;
-            levels[1].time = tones[1].time = hand->first_frame_ns;
-            levels[0].value = levels[1].value = level, tones[0].value = tones[1].value = tone;
-            filled = 2, carried = 1;
+            levels[1].time = tones[1].time = hand->first_frame_ns - (XrDuration)(1e9 / hand->rate_hz);
+            levels[2].time = tones[2].time = hand->first_frame_ns;
+            filled = 3, carried = 1, hand->tone = tone;
             continue;
         }
         XrDuration time = hand->first_frame_ns + (XrDuration)((double)(points[at].tick - hand->first_tick) * 1e9 / hand->rate_hz);

@@ -68,7 +68,7 @@ static class Test
                 {
                     double t = tick / 60.0, u = 25 * t;
                     scene.Report(t, tick == 0 ? Event.Begin(1, top, 1, u, 0.5, 0.6) : Event.Move(1, u, 0.5, 0.6));
-                    if (tick == 30) scene.Report(t, Event.Collision(plate, 0.002, 0.5, 0.6));
+                    if (tick == 50) scene.Report(t, Event.Collision(plate, 0.002, 0.5, 0.6));
                     renderer.Render(block, 2, new[] { 0, Renderer.Haptic + 1 });
                     int read = port.Pcm(pcm);
                     Must(read == 800, "the port holds what was rendered");

@@ -11,7 +11,7 @@ use asperity::{
 };
 use asperity_dsp::vibration_points::{Point, PointSettings, Tone};
 use asperity_evidence::corpus::corpus;
-use asperity_ports::{AmplitudePoint, Clip, Device, FrequencyPoint, dualsense, felt, oscillator, rumble};
+use asperity_ports::{AmplitudePoint, Clip, Device, FrequencyPoint, dualsense, felt, rumble};
 use std::f64::consts::TAU;
 
 const RATE_HZ: f64 = 48_000.0;
@@ -53,7 +53,7 @@ fn stroke(material: Material, speed_m_s: f64, force_n: f64, rests: u32) -> impl 
 fn strikes(scene: &mut Scene) -> Happens {
     let bell = scene.add_body(Body::stock(Stock::Bar, Material::WOOD, 0.3).unwrap()).unwrap();
     Box::new(move |scene, tick| {
-        if tick % 24 == 0 {
+        if tick % 24 == 12 {
             let blow = Impact::from_impulse(bell, 0.01, 0.5, 0.6).felt_by(ChannelId(0));
             scene.report(f64::from(tick) * TICK_S, ContactEvent::Impact(blow)).unwrap();
         }
@@ -64,8 +64,8 @@ fn recording(samples: Vec<f64>, rate_hz: f64) -> impl Fn(&mut Scene) -> Happens 
     move |_| {
         let clip = Waveform::new(samples.iter().map(|x| *x as f32).collect(), rate_hz);
         Box::new(move |scene, tick| {
-            if tick == 0 {
-                scene.play_clip(0.0, ChannelId(0), &clip).unwrap();
+            if tick == 12 {
+                scene.play_clip(12.0 * TICK_S, ChannelId(0), &clip).unwrap();
             }
         })
     }
@@ -121,24 +121,34 @@ fn reduced(points: &[Point], full_scale: f64, device: &Device) -> Clip {
 }
 
 /// Largest difference of third octaves of the device's range, dB; what lies 30 dB below the
-/// strongest counts as that.
-fn apart_db(was: &[f64], is: &[f64], [low_hz, high_hz]: [f64; 2]) -> f64 {
-    let count = was.len().max(is.len());
-    let octaves = |x: &[f64]| -> Vec<f64> {
-        let mut bands = Vec::new();
-        for k in -13..-5 {
-            let centre_hz = 1000.0 * 2f64.powf(f64::from(k) / 3.0);
-            if (low_hz * 0.9..high_hz * 1.1).contains(&centre_hz) {
-                let bin = |hz: f64| (hz * count as f64 / felt::RATE_HZ).ceil() as usize;
-                let [from, to] = [-1.0, 1.0].map(|side: f64| bin(centre_hz * 2f64.powf(side / 6.0)));
-                bands.push((from..to).map(|bin| bin_power(x, bin as f64 / count as f64)).sum());
-            }
-        }
-        bands
-    };
-    let (was, is) = (octaves(was), octaves(is));
+/// strongest counts as that. No device promises the phase of its oscillator, and a blow that is as
+/// short as a period depends on it: power is that of sine and cosine.
+fn apart_db(was: &Clip, is: &Clip, device: &Device) -> f64 {
+    let [was, is] = [was, is].map(|clip| third_octaves(clip, device));
     let floor = was.iter().copied().fold(0.0, f64::max) * 1e-3;
     was.iter().zip(&is).map(|(a, b)| (10.0 * (b.max(floor) / a.max(floor)).log10()).abs()).fold(0.0, f64::max)
+}
+
+fn third_octaves(clip: &Clip, device: &Device) -> Vec<f64> {
+    let mut turns = 0.0;
+    let waves = clip.sampled(felt::RATE_HZ).map(|(amplitude, frequency)| {
+        let (sine, cosine) = f64::sin_cos(TAU * turns);
+        turns += device.hz(frequency) / felt::RATE_HZ;
+        (amplitude * sine, amplitude * cosine)
+    });
+    let (sine, cosine): (Vec<f64>, Vec<f64>) = waves.unzip();
+    // Bins of one width, whichever of two is longer: beyond its end a wave is nothing.
+    let count = (5.0 * felt::RATE_HZ) as usize;
+    assert!(sine.len() <= count);
+    let [low_hz, high_hz] = device.band_hz;
+    let centres_hz = (-13..-5).map(|k| 1000.0 * 2f64.powf(f64::from(k) / 3.0));
+    let inside = centres_hz.filter(|hz| (low_hz * 0.9..high_hz * 1.1).contains(hz));
+    let power = |centre_hz: f64| {
+        let bin = |side: f64| (5.0 * centre_hz * 2f64.powf(side / 6.0)).ceil() as usize;
+        let bins = (bin(-1.0)..bin(1.0)).map(|bin| bin as f64 / count as f64);
+        bins.map(|turns| bin_power(&sine, turns) + bin_power(&cosine, turns)).sum()
+    };
+    inside.map(power).collect()
 }
 
 fn bin_power(x: &[f64], turns_a_sample: f64) -> f64 {
@@ -148,8 +158,8 @@ fn bin_power(x: &[f64], turns_a_sample: f64) -> f64 {
     a * a + b * b - c * a * b
 }
 
-/// Frames hold the points of the reduction one by one, but for the level that a first frame holds
-/// and the silence that ends a stream.
+/// Frames hold the points of the reduction one by one, but for the silence that begins and that
+/// which ends a stream.
 fn same_points(name: &str, frames: &[(f64, HeadsetFrame)], reduced: &Clip) {
     let points: Vec<[f32; 2]> = reduced
         .amplitude
@@ -159,19 +169,23 @@ fn same_points(name: &str, frames: &[(f64, HeadsetFrame)], reduced: &Clip) {
         .collect();
     let mut at = 0;
     for (_, HeadsetFrame { stage, points: framed, .. }) in frames {
-        let held = usize::from(*stage == FrameStage::First);
+        let silent = if *stage == FrameStage::First { 2 } else { 0 };
         let near =
             |point: &[f32; 2], framed: [f32; 2]| point.iter().zip(framed).all(|(a, b)| (a - b).abs() < 1e-5);
         let value = |index: usize| [framed[index].amplitude, framed[index].frequency];
-        if held == 1 {
-            let ahead = points[at..].iter().position(|point| near(point, value(1)));
+        if silent > 0 {
+            let ahead = points[at..].iter().position(|point| near(point, value(silent)));
             at += ahead.unwrap_or_else(|| panic!("{name}: a point of nothing"));
         }
         let kept = framed.len() - usize::from(*stage == FrameStage::Last);
-        for index in held..kept {
-            assert!(near(&points[at + index - held], value(index)), "{name}: point {}", at + index - held);
+        for index in silent..kept {
+            assert!(
+                near(&points[at + index - silent], value(index)),
+                "{name}: point {}",
+                at + index - silent
+            );
         }
-        at += framed.len() - held;
+        at += framed.len() - silent;
     }
 }
 
@@ -217,11 +231,9 @@ fn arrives(name: &str, seconds: f64, build: &Build<'_>) -> [f64; 2] {
         (20.0 * (is / was).log10()).abs()
     });
     let motors_db = motors_db.fold(0.0, f64::max);
-    let left = oscillator::rendered(&as_clip(&frames), &device, felt::RATE_HZ);
     let reduced = reduced(&points, full_scale, &device);
     same_points(name, &frames, &reduced);
-    let original = oscillator::rendered(&reduced, &device, felt::RATE_HZ);
-    let frames_db = apart_db(&original, &left, device.band_hz);
+    let frames_db = apart_db(&reduced, &as_clip(&frames), &device);
     println!(
         "{name}: {} frames, third octaves within {frames_db:.2} dB; motors within {motors_db:.3} dB",
         frames.len()
@@ -244,12 +256,11 @@ fn five_strokes_arrive_as_the_causal_reduction_has_them() {
     }
 }
 
-/// A first frame has to be long: a blow that is shorter is held for as long, and its third octaves
-/// are another's. Its points are the reduction's, and the motors' levels are.
+/// A blow is shorter than the first frame that a runtime wants.
 #[test]
-fn blows_and_recordings_of_blows_arrive_point_by_point() {
-    let [_, motors_db] = arrives("a bar that is struck", 4.0, &strikes);
-    assert!(motors_db <= 1.0, "{motors_db} dB");
+fn blows_and_recordings_of_blows_arrive_as_short_and_as_strong_as_they_were() {
+    let errors_db = arrives("a bar that is struck", 4.0, &strikes);
+    assert!(errors_db.iter().all(|db| *db <= 1.0), "{errors_db:?}");
     let Some(folder) = corpus("impacts") else { return };
     for name in [
         "glockenspiel_2096.57",
@@ -259,8 +270,8 @@ fn blows_and_recordings_of_blows_arrive_point_by_point() {
         "vcsl_xylo_medium_C5_ff",
     ] {
         let (samples, rate_hz) = wav(&folder.join(format!("{name}.wav")));
-        let seconds = (samples.len() as f64 / rate_hz).min(4.0) + 0.3;
-        let [_, motors_db] = arrives(name, seconds, &recording(samples, rate_hz));
-        assert!(motors_db <= 1.0, "{name}: {motors_db} dB");
+        let seconds = (samples.len() as f64 / rate_hz).min(4.0) + 0.5;
+        let errors_db = arrives(name, seconds, &recording(samples, rate_hz));
+        assert!(errors_db.iter().all(|db| *db <= 1.0), "{name}: {errors_db:?}");
     }
 }

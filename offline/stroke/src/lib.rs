@@ -55,7 +55,9 @@ pub struct StrokeError {
 
 impl StrokeError {
     fn new(field: &'static str, what: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self { field, what: what.into(), expected: expected.into() }
+        // Readers of XML quote what they find, line breaks too.
+        let what = what.into().split(char::is_control).collect::<Vec<_>>().join(" ");
+        Self { field, what, expected: expected.into() }
     }
 }
 

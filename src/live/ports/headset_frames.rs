@@ -1,8 +1,9 @@
 //! Headset frames port: points as frames of `XR_EXT_haptic_parametric` (OpenXR 1.1.60), which the
 //! runtime of a headset's controller plays as they come.
 //!
-//! A stream begins with the first point that is felt; its first frame holds that level for as long
-//! as the runtime wants it to last, and what follows lags by that. It ends after 0.1 s of silence.
+//! A stream begins with the first point that is felt. Its first frame lasts as long as the runtime
+//! wants, silent until that point, with which it ends; everything lags by that, and a blow that is
+//! shorter stays as short. It ends after 0.1 s of silence.
 //! Points that cannot be played are counted. `asperity_openxr.h` does this for C.
 
 use super::Feed;
@@ -71,7 +72,7 @@ pub struct FramePoint {
 pub struct HeadsetFrame {
     /// Position in its stream.
     pub stage: FrameStage,
-    /// Points in their order; two at least in a first frame.
+    /// Points in their order; three at least in a first frame.
     pub points: Vec<FramePoint>,
     /// Range of frequencies, Hz; said by the first frame alone.
     pub band_hz: Option<[f64; 2]>,
@@ -95,6 +96,9 @@ pub struct HeadsetFramesPort {
     settings: PointSettings,
     full_scale: f64,
     first_ns: i64,
+    rise_ns: i64,
+    /// Frequency of the point before.
+    before: f32,
     stream: Option<Stream>,
     counts: FrameCounts,
 }
@@ -115,12 +119,19 @@ impl PortKind for HeadsetFrames {
         within("full_scale", full_scale, FULL_SCALE)?;
         within("first_frame_s", first_frame_s, FIRST_FRAME_S)?;
         let Opened { outlet, port: points } = Points { from, settings, holds_s }.open(setup)?;
-        let first_ns = (first_frame_s.max(1.0 / settings.rate_hz) * 1e9).ceil() as i64;
-        let counts = FrameCounts::default();
-        Ok(Opened {
-            outlet,
-            port: HeadsetFramesPort { points, settings, full_scale, first_ns, stream: None, counts },
-        })
+        let point_s = 1.0 / settings.rate_hz;
+        let first_ns = (first_frame_s.max(point_s) * 1e9).ceil() as i64;
+        let port = HeadsetFramesPort {
+            points,
+            settings,
+            full_scale,
+            first_ns,
+            rise_ns: first_ns - (point_s * 1e9) as i64,
+            before: 0.0,
+            stream: None,
+            counts: FrameCounts::default(),
+        };
+        Ok(Opened { outlet, port })
     }
 }
 
@@ -161,6 +172,7 @@ impl HeadsetFramesPort {
             let amplitude = (point.amplitude / self.full_scale).clamp(0.0, 1.0) as f32;
             let [low_hz, high_hz] = self.settings.band_hz;
             let frequency = ((point.frequency_hz - low_hz) / (high_hz - low_hz)).clamp(0.0, 1.0) as f32;
+            let before = std::mem::replace(&mut self.before, frequency);
             let is_felt = amplitude >= FLOOR;
             let at = |time_ns| FramePoint { time_ns, amplitude, frequency };
             let Some(stream) = &mut self.stream else {
@@ -172,7 +184,8 @@ impl HeadsetFramesPort {
                     stage = FrameStage::First;
                     let (first_tick, last_ns) = (point.tick, self.first_ns);
                     self.stream = Some(Stream { first_tick, began_s: now_s, last_ns, felt_ns: 0 });
-                    filled.extend([at(0), at(self.first_ns)]);
+                    let silent = |time_ns| FramePoint { time_ns, amplitude: 0.0, frequency: before };
+                    filled.extend([silent(0), silent(self.rise_ns), at(self.first_ns)]);
                     self.counts.framed += 1;
                 }
                 continue;
