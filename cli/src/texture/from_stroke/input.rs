@@ -226,16 +226,16 @@ fn axes(
 
 /// Rate of a table, Hz.
 fn rate(options: &Options, path: &Path, table: &Columns) -> Result<f64, CliError> {
-    let (own, told) = (table.rate_hz()?, options.rate);
-    if let (Some(own), Some(told)) = (own, told)
-        && (own / told - 1.0).abs() > 0.05
+    let (own, given) = (table.rate_hz()?, options.rate);
+    if let (Some(own), Some(given)) = (own, given)
+        && (own / given - 1.0).abs() > 0.05
     {
-        let what = format!("its times tell {own:.4} Hz, --rate {told} Hz");
+        let what = format!("its times say {own:.4} Hz, --rate {given} Hz");
         return Err(CliError::file(
             path,
             what,
             "times must be in seconds; leave out --rate, or name the columns",
         ));
     }
-    own.or(told).ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"))
+    own.or(given).ok_or_else(|| CliError::file(path, "has no column time_s", "add it, or say --rate HZ"))
 }
