@@ -84,6 +84,38 @@ fn three_axes_and_columns_are_folded_and_give_friction() {
 }
 
 #[test]
+fn tables_of_other_programs_are_read_as_the_same_stroke() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let vibration = vibration(4.0, 90.0);
+    let alpha = |head: &str, separator: &str, comma: bool, more: &[&str]| {
+        let mut text = format!("{head}\n");
+        for (i, a) in vibration.iter().enumerate() {
+            let row = [i as f64 / RATE_HZ, *a, 0.2 * a].map(|x| format!("{x:.9}")).join(separator);
+            writeln!(text, "{}", if comma { row.replace('.', ",") } else { row }).unwrap();
+        }
+        fs::write(folder.join("stroke.csv"), text).unwrap();
+        let report = read(folder, &[&SPEED[..], more].concat());
+        assert!(report["warnings"][0].as_str().unwrap().contains("folded by power"), "{report}");
+        report["alpha"].as_f64().unwrap()
+    };
+    let plain = alpha("time_s,x,y", ",", false, &[]);
+    for (head, separator, comma) in [
+        ("\u{feff}time_s;x;y", ";", true),
+        ("Time (s)\tx\ty", "\t", true),
+        ("time x y", " ", false),
+        ("# a sensor, 4 kHz\nt,x,y", ",", false),
+    ] {
+        let other = alpha(head, separator, comma, &["--rate", "4000"]);
+        assert!((other - plain).abs() < 1e-6, "{head}: {other}, not {plain}");
+    }
+    let arguments =
+        ["texture", "from-stroke", "stroke.csv", "--probe", "stylus", "-o", "again", "--rate", "1000"];
+    let words = asperity(folder, &[&arguments[..], &SPEED].concat());
+    assert_refused(&words, &["its times tell 4000 Hz", "--rate 1000 Hz"]);
+}
+
+#[test]
 fn a_recording_that_is_no_stroke_is_refused_for_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

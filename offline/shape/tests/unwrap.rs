@@ -119,22 +119,19 @@ fn curved_sheets_reach_the_least_energy_without_flips() {
 }
 
 #[test]
-fn a_cap_as_deep_as_it_is_wide_is_not_left_as_its_squeezed_first_guess() {
-    // A half sphere with a wall of its own radius, bent to one side.
-    let cap = |u: f64, v: f64| {
-        let (ring, angle) = (u.abs().max(v.abs()), v.atan2(u));
-        let way = ring * (0.5 * std::f64::consts::PI + 2.5);
-        let (out, up) = if way < 0.5 * std::f64::consts::PI {
-            (way.sin(), -way.cos())
-        } else {
-            (1.0, way - 0.5 * std::f64::consts::PI)
-        };
-        [0.05 * (out * angle.cos() + 0.1 * up * up), 0.05 * out * angle.sin(), 0.05 * up]
-    };
-    let mesh = sheet(40, cap);
+fn the_teeth_of_a_flat_comb_are_not_left_squeezed_as_they_were_first_guessed() {
+    const CELLS: usize = 40;
+    let whole = sheet(CELLS, |u, v| [0.1 * u, 0.1 * v, 0.0]);
+    let teeth = |cell: usize| cell / CELLS < 6 || cell % CELLS % 8 < 5;
+    let kept = whole.triangles.iter().enumerate().filter(|(i, _)| teeth(i / 2)).map(|(_, t)| *t);
+    let mut mesh = SurfaceMesh { points: Vec::new(), triangles: kept.collect() };
+    let used: BTreeSet<u32> = mesh.triangles.iter().flatten().copied().collect();
+    let number = |old: &u32| used.range(..old).count() as u32;
+    mesh.triangles.iter_mut().for_each(|t| *t = t.each_ref().map(number));
+    mesh.points = used.iter().map(|old| whole.points[*old as usize]).collect();
     let made = unwrap(&mesh, Method::Energy(PHI)).unwrap();
     println!("{:?}", (made.energy, made.flipped, made.area_distortion));
-    assert!(made.energy < 0.6 * mesh.area_m2() && made.area_distortion.max < 4.0, "{made:?}");
+    assert!(made.energy < 1e-2 * mesh.area_m2() && made.flipped == 0, "{} m²", made.energy);
 }
 
 #[test]
