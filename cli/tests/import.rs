@@ -306,3 +306,18 @@ fn a_mesh_without_coordinates_is_unwrapped_in_metres_or_told_why_not() {
         asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--unwrap", "energy", "--phi", "2"]);
     assert!(String::from_utf8_lossy(&message.stderr).contains("must be 0 to 1"));
 }
+
+#[test]
+fn an_extension_that_a_document_requires_and_nobody_reads_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut document, bytes) = document();
+    document["extensionsRequired"] = json!(["EXT_unknown", "KHR_mesh_quantization"]);
+    put(folder.path(), &document, &bytes);
+    let (status, out, _) = told(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
+    let report: Value = serde_json::from_str(&out).unwrap();
+    let warnings = report["warnings"].to_string();
+    assert!(
+        status == 0 && warnings.contains("EXT_unknown") && !warnings.contains("quantization"),
+        "{warnings}"
+    );
+}

@@ -6,7 +6,7 @@ use crate::pictures::{array, raster};
 use asperity_evidence::compare::{Asked, Comparison, STROKES, Table, all_like_the_first};
 use asperity_pictures::from_photo::{DECIDED, PhotoOptions, PhotoSurface, reduced, surface_from_photo};
 use asperity_pictures::light::Light;
-use asperity_pictures::photograph::load_photograph;
+use asperity_pictures::photograph::load_reduced_photograph;
 use asperity_pictures::shape_from_shading::{Method, STEPS};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -26,8 +26,9 @@ const METHODS: [(&str, Method); 4] = [
 /// The brightness of a photograph, 0 to 1, and how much of it is colour rather than light.
 #[pyfunction]
 pub fn read_photograph<'py>(py: Python<'py>, path: PathBuf) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let (image, colour) = py.detach(|| load_photograph(&path)).map_err(|error| refused_at(&path, error))?;
-    Ok((array(py, image.raster)?, colour))
+    let whole = || load_reduced_photograph(&path, usize::MAX);
+    let photograph = py.detach(whole).map_err(|error| refused_at(&path, error))?;
+    Ok((array(py, photograph.brightness)?, photograph.colour))
 }
 
 /// Heights of a photograph in metres, its roughness, and what was found out about it.

@@ -22,6 +22,8 @@ use std::path::PathBuf;
 
 /// The extension, as of the draft's commit 2ea03a8 of 2026-08-22.
 pub const EXTENSION: &str = "KHR_audio_rigid_bodies";
+/// Extensions that are read where a document requires them.
+const READ: [&str; 3] = [EXTENSION, "KHR_mesh_quantization", "KHR_texture_transform"];
 /// Most relief that a scene takes, m.
 const MOST_RELIEF_M: f64 = 0.1;
 
@@ -152,6 +154,10 @@ impl Scene {
         }
         if !has_draft {
             scene.plain(document, &maps, options)?;
+        }
+        let required = document.list("extensionsRequired").iter().filter_map(Value::as_str);
+        for name in required.filter(|name| !READ.contains(name)) {
+            scene.tell(format!("{name}, which the document requires, is not read"));
         }
         if scene.bodies.is_empty() && scene.surfaces.is_empty() && scene.unwrapped.is_empty() {
             let right = format!(

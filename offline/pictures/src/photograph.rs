@@ -5,22 +5,9 @@ mod jpeg;
 mod tests;
 
 use crate::fractal_dimension::ColourSums;
-use asperity_surface::image_io::{Channel, ChannelImage, ImageError, Picture, decode_photograph, open};
+use asperity_surface::image_io::{ImageError, Picture, decode_photograph, open};
 use asperity_surface::raster::Raster;
 use std::path::Path;
-
-/// Reads the brightness of a photograph, and how much of it is colour rather than light
-/// ([`ColourSums::fraction`]), decoding it once.
-///
-/// # Errors
-/// As [`load_channel`](asperity_surface::image_io::load_channel).
-pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), ImageError> {
-    let path = path.as_ref();
-    open(path)
-        .and_then(decode_photograph)
-        .and_then(|photograph| Ok((photograph.channel(Channel::Luma)?, colour_of(&photograph))))
-        .map_err(|problem| ImageError { file: path.to_path_buf(), problem })
-}
 
 /// A photograph as the tools work on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -92,6 +92,21 @@ fn attack_decay_and_release_are_ramps_and_told() {
 }
 
 #[test]
+fn a_release_under_a_falling_curve_is_as_weak_as_both_make_it() {
+    let release = r#","EventDuration":0.435"#;
+    let held = event("Continuous", 0.0, release).replace(
+        r#""EventParameters":["#,
+        r#""EventParameters":[{"ParameterID":"ReleaseTime","ParameterValue":0.2},"#,
+    );
+    let clip = clip(&[held, curve("Intensity", 0.0, &[(0.435, 0.8), (0.635, 0.2)])]);
+    for part in [0.1, 0.3, 0.5, 0.7] {
+        let (level, expected) =
+            (at(&clip, 0.435 + 0.2 * part).0, ((1.0 - part) * (0.8 - 0.6 * part)).powi(2));
+        assert!(20.0 * (level / expected).log10().abs() < 0.5, "{part}: {level} {expected}");
+    }
+}
+
+#[test]
 fn trailing_commas_and_comments_of_the_vendors_samples_are_read() {
     let text = r#"{"Version": 1.0, // as shipped
         "Pattern": [{"Event": {"Time": 0.0, "EventType": "HapticTransient", "EventParameters": [],},},],}"#;

@@ -2,6 +2,7 @@
 
 use crate::error::ShapeError;
 use crate::mesh::Mesh;
+use std::collections::HashMap;
 
 /// The word for the part of the greatest volume.
 const LARGEST: &str = "largest";
@@ -12,17 +13,18 @@ const LISTED: usize = 12;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Names {
     names: Vec<String>,
+    numbers: HashMap<String, u32>,
     of: Vec<[Option<u32>; 2]>,
 }
 
 impl Names {
     /// Number of a name.
     pub(crate) fn number(&mut self, name: &str) -> u32 {
-        let at = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
-            self.names.push(name.to_owned());
-            self.names.len() - 1
-        });
-        at as u32
+        let Self { names, numbers, .. } = self;
+        *numbers.entry(name.to_owned()).or_insert_with(|| {
+            names.push(name.to_owned());
+            names.len() as u32 - 1
+        })
     }
 
     /// Names elements up to `elements` that have none yet.
@@ -42,7 +44,7 @@ impl Names {
 /// # Errors
 /// When the file has no part of that name.
 pub(crate) fn part(mesh: Mesh, names: &Names, wanted: &str) -> Result<Mesh, ShapeError> {
-    let number = names.names.iter().position(|name| name == wanted).map(|n| n as u32);
+    let number = names.numbers.get(wanted).copied();
     let Mesh::Surface(mut surface) = mesh else {
         return if wanted == LARGEST { Ok(mesh.largest_part()) } else { Err(unknown(names, wanted)) };
     };

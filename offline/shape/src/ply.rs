@@ -76,11 +76,20 @@ fn elements(bytes: &[u8]) -> Result<(Vec<Vertex>, Vec<Face>), DeserializeError> 
     while let Some(element) = reader.current_element() {
         match element.name.as_str() {
             "vertex" => vertices = reader.next_element()?,
-            "face" => faces = reader.next_element()?,
+            "face" => faces.extend(reader.next_element::<Vec<Face>>()?),
+            "tristrips" => faces.extend(reader.next_element::<Vec<Face>>()?.iter().flat_map(of_strips)),
             _ => _ = reader.next_element::<Vec<Skipped>>()?,
         }
     }
     Ok((vertices, faces))
+}
+
+/// Triangles of strips with a −1 between two, every other one turned.
+fn of_strips(strips: &Face) -> Vec<Face> {
+    let strips = strips.vertex_indices.split(|&corner| corner < 0);
+    let all = strips.flat_map(|strip| strip.windows(3).enumerate());
+    let own = all.filter(|(_, t)| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+    own.map(|(i, t)| Face { vertex_indices: vec![t[i % 2], t[1 - i % 2], t[2]] }).collect()
 }
 
 fn is_text(bytes: &[u8]) -> bool {

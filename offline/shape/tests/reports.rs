@@ -321,3 +321,40 @@ fn a_cube_gaping_at_a_corner_is_refused_with_its_closures() {
     let error = make(Mesh::Surface(mesh), &making, &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("holes were closed") && !error.contains('\n'), "{error}");
 }
+
+/// Took half a minute of one processor: each name was looked for among all before it.
+#[test]
+fn one_group_of_a_scene_of_two_hundred_thousand_is_read() {
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let groups: String = (0..200_000).map(|i| format!("g block{i}\nf 1 2 3\n")).collect();
+    let path = std::env::temp_dir().join(format!("asperity-groups-{}.obj", std::process::id()));
+    std::fs::write(&path, format!("{corners}{groups}")).unwrap();
+    let part = asperity_shape::load_part(&path, Some("block199999"));
+    std::fs::remove_file(&path).unwrap();
+    let Ok(asperity_shape::Mesh::Surface(part)) = part else { panic!("{part:?}") };
+    assert_eq!(part.triangles.len(), 1);
+}
+
+/// Scans of the nineties come so; they were refused as points without a face.
+#[test]
+fn a_ply_of_strips_is_the_body() {
+    let mut text =
+        "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
+                    element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+            .to_owned();
+    POINTS.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
+    text.push_str("20 0 4 1 5 2 6 3 7 0 4 -1 0 1 3 2 -1 4 7 5 6\n");
+    let asperity_shape::Mesh::Surface(mesh) = parse(Path::new("box.ply"), text.as_bytes()).unwrap() else {
+        panic!("no surface")
+    };
+    let volume_m3: f64 = mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|i| mesh.points[i as usize]);
+            let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+            (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
+        })
+        .sum();
+    assert!(mesh.triangles.len() == 12 && (volume_m3.abs() / 1.2e-4 - 1.0).abs() < 1e-6, "{volume_m3}");
+}

@@ -1,7 +1,7 @@
 //! A photograph's colour share at both depths.
 
 use super::*;
-use asperity_surface::image_io::load_channel;
+use asperity_surface::image_io::{Channel, load_channel};
 use image::{DynamicImage, GrayImage};
 
 /// Darker to the right, a bright first row.
@@ -15,9 +15,9 @@ fn a_photographs_colour_is_known_at_8_and_16_bits() {
     let path = folder.path().join("picture.png");
     let colour = |image: DynamicImage| {
         image.save(&path).unwrap();
-        let (picture, colour) = load_photograph(&path).unwrap();
-        assert_eq!(picture, load_channel(&path, Channel::Luma).unwrap());
-        colour
+        let photograph = load_reduced_photograph(&path, usize::MAX).unwrap();
+        assert_eq!(photograph.brightness, load_channel(&path, Channel::Luma).unwrap().raster);
+        photograph.colour
     };
     assert_eq!(colour(DynamicImage::from(shaded())), 0.0);
     let red = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([(x * 9) as u8, (y * 5) as u8, 40]));
