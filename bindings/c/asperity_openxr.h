@@ -108,9 +108,8 @@ typedef struct asp_xr_hand {
     uint64_t quiet, sent;
     int streams;
     uint64_t first_tick;
-    double began_s;
+    double began_s, tone; /* tone: of the point before */
     XrDuration last_ns, silent_since_ns;
-    float tone; /* of the point before */
     uint64_t lost_before;
     /* Counts: calls, points (of a waveform: samples) played, those of silence that need no call, and what was not played. */
     uint64_t calls, played, silent, unfocused, dropped, refused;
@@ -238,11 +237,9 @@ static inline XrResult asp_xr_stream(asp_xr_hand *hand, const asp_point *points,
             type = ASP_XR_FIRST;
             hand->first_tick = points[at].tick, hand->began_s = now_s;
             hand->silent_since_ns = 0;
-            levels[0].value = levels[1].value = 0.0f, levels[2].value = level;
-            tones[0].value = tones[1].value = hand->tone, tones[2].value = tone;
-            levels[0].time = tones[0].time = 0;
+            levels[0].value = levels[1].value = 0.0f, levels[2].value = level, tones[0].value = tones[1].value = (float)hand->tone, tones[2].value = tone;
+            levels[0].time = tones[0].time = 0, levels[2].time = tones[2].time = hand->first_frame_ns;
             levels[1].time = tones[1].time = hand->first_frame_ns - (XrDuration)(1e9 / hand->rate_hz);
-            levels[2].time = tones[2].time = hand->first_frame_ns;
             filled = 3, carried = 1, hand->tone = tone;
             continue;
         }

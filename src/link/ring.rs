@@ -63,6 +63,8 @@ mod tests {
         assert_eq!((sender.capacity(), sender.free(), receiver.peek()), (3, 3, None));
         assert_eq!([1, 2, 3, 4].map(|item| sender.send(item)), [Ok(()), Ok(()), Ok(()), Err(4)]);
         assert_eq!((sender.capacity(), sender.free(), receiver.peek()), (3, 0, Some(&1)));
+        #[cfg(feature = "device")]
+        assert_eq!(receiver.waiting(), 3);
         assert_eq!([receiver.receive(), receiver.receive()], [Some(1), Some(2)]);
         assert_eq!((sender.free(), receiver.peek()), (2, Some(&3)));
         #[cfg(feature = "device")]

@@ -1,4 +1,4 @@
-//! Rumble: two motor levels some ten times a second, and one for those that have one motor only.
+//! Rumble: two motor levels some ten times a second.
 //!
 //! Both come from the causal kernel, so a game's live port and this give the same numbers.
 
@@ -31,12 +31,6 @@ pub fn levels(samples: &[f64], rate_hz: f64, per_s: f64) -> Result<Vec<[u16; 2]>
     Ok(causal(samples, rate_hz, settings)?.iter().map(|p| [level(p.low), level(p.high)]).collect())
 }
 
-/// One level for what has one motor: the stronger of both, 0 to 1.
-#[must_use]
-pub fn pulse(levels: [u16; 2]) -> f64 {
-    f64::from(levels[0].max(levels[1])) / 65_535.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,10 +45,8 @@ mod tests {
             let all = levels(&sine(hz), 8000.0, 30.0).unwrap();
             assert_eq!(all.len(), 30);
             let last = all[29];
-            assert!(
-                (pulse(last) - 0.5).abs() < 0.05 && last[motor] > 3 * last[1 - motor],
-                "{hz} Hz: {last:?}"
-            );
+            let share = f64::from(last[motor]) / 65_535.0;
+            assert!((share - 0.5).abs() < 0.05 && last[motor] > 3 * last[1 - motor], "{hz} Hz: {last:?}");
         }
     }
 }

@@ -96,7 +96,6 @@ pub struct HeadsetFramesPort {
     settings: PointSettings,
     full_scale: f64,
     first_ns: i64,
-    rise_ns: i64,
     /// Frequency of the point before.
     before: f32,
     stream: Option<Stream>,
@@ -119,18 +118,9 @@ impl PortKind for HeadsetFrames {
         within("full_scale", full_scale, FULL_SCALE)?;
         within("first_frame_s", first_frame_s, FIRST_FRAME_S)?;
         let Opened { outlet, port: points } = Points { from, settings, holds_s }.open(setup)?;
-        let point_s = 1.0 / settings.rate_hz;
-        let first_ns = (first_frame_s.max(point_s) * 1e9).ceil() as i64;
-        let port = HeadsetFramesPort {
-            points,
-            settings,
-            full_scale,
-            first_ns,
-            rise_ns: first_ns - (point_s * 1e9) as i64,
-            before: 0.0,
-            stream: None,
-            counts: FrameCounts::default(),
-        };
+        let first_ns = (first_frame_s.max(1.0 / settings.rate_hz) * 1e9).ceil() as i64;
+        let (before, stream, counts) = (0.0, None, FrameCounts::default());
+        let port = HeadsetFramesPort { points, settings, full_scale, first_ns, before, stream, counts };
         Ok(Opened { outlet, port })
     }
 }
@@ -185,7 +175,8 @@ impl HeadsetFramesPort {
                     let (first_tick, last_ns) = (point.tick, self.first_ns);
                     self.stream = Some(Stream { first_tick, began_s: now_s, last_ns, felt_ns: 0 });
                     let silent = |time_ns| FramePoint { time_ns, amplitude: 0.0, frequency: before };
-                    filled.extend([silent(0), silent(self.rise_ns), at(self.first_ns)]);
+                    let rise_ns = self.first_ns - (1e9 / self.settings.rate_hz) as i64;
+                    filled.extend([silent(0), silent(rise_ns), at(self.first_ns)]);
                     self.counts.framed += 1;
                 }
                 continue;
