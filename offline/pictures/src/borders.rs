@@ -17,9 +17,6 @@ use asperity_surface::raster::Raster;
 /// Ratio of the mean step across a seam to the mean step inside up to which an image tiles. Source:
 /// ours; tileable maps of the corpus stay below 1.3, photographs are above 2.
 pub const SEAM_LIMIT: f64 = 1.6;
-/// The same ratio up to which a surface that was made is said to tile. Source: ours; a crop of
-/// cloth between both limits was called tiling, and its seam was felt.
-pub const EVEN_SEAM: f64 = 1.3;
 /// Part of the step across a seam within which two neighbours inside must equal the two at the seam
 /// for it to be one of the pattern's own edges. Source: ours; strips of photographs differ by the
 /// step itself.
@@ -43,7 +40,7 @@ impl Borders {
     #[must_use]
     pub fn decide(self, image: &Raster) -> Self {
         match self {
-            Self::Detect if tiles(image, SEAM_LIMIT) => Self::Periodic,
+            Self::Detect if seam_ratio(image) <= SEAM_LIMIT || has_ordinary_seams(image) => Self::Periodic,
             Self::Detect => Self::Smooth,
             decided => decided,
         }
@@ -72,25 +69,23 @@ pub fn seam_ratio(image: &Raster) -> f64 {
     ratio(across_x, inside_x).max(ratio(across_y, inside_y))
 }
 
-/// Tests whether the steps across both seams are at most `limit` times those beside them, or are
-/// met inside.
-pub(crate) fn tiles(image: &Raster, limit: f64) -> bool {
+/// Tests whether the steps across both seams are no larger than others or are met inside.
+fn has_ordinary_seams(image: &Raster) -> bool {
     let (w, h) = (image.width, image.height);
     let turned = || Raster::from_fn(h, w, |x, y| image.at(y, x));
-    let is_met = |image: &Raster| seam_is_met_inside(image, limit);
-    seam_ratio(image) <= limit || (w >= 4 && h >= 4 && is_met(image) && is_met(&turned()))
+    w >= 4 && h >= 4 && seam_is_met_inside(image) && seam_is_met_inside(&turned())
 }
 
 /// Tests whether two neighbouring rows inside are those that meet at the seam, the last one and the
 /// first one.
-fn seam_is_met_inside(image: &Raster, limit: f64) -> bool {
+fn seam_is_met_inside(image: &Raster) -> bool {
     let last = image.height - 1;
     let distance = |a: usize, b: usize| -> f64 {
         image.row(a).iter().zip(image.row(b)).map(|(a, b)| (a - b).abs()).sum()
     };
     let across = distance(last, 0);
     let inside = distance(0, 1) + distance(last - 1, last);
-    2.0 * across <= limit * inside
+    2.0 * across <= SEAM_LIMIT * inside
         || (0..last).any(|row| distance(row, last) + distance(row + 1, 0) <= SAME_STRIP * across)
 }
 

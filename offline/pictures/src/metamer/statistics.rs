@@ -6,7 +6,7 @@ use super::level::{Level, Schedule, Sought, Task, add, on_grid};
 use super::spectrum::with_amplitudes;
 use super::terraces::{ground_under, heights_of_terraces};
 use super::{Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, check_finite};
-use crate::borders::{Borders, EVEN_SEAM, SplitBorders, tiles};
+use crate::borders::{Borders, SplitBorders};
 use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use asperity_dsp::DesignError;
 use asperity_surface::raster::Raster;
@@ -108,11 +108,10 @@ impl Statistics {
         };
         add(&mut image, seam.as_ref(), 1.0);
         let image = stored(image);
-        let periodic = seam.is_none();
-        let tileable = periodic && (self.options.borders == Borders::Periodic || tiles(&image, EVEN_SEAM));
-        let after = self.distance(&image, periodic);
+        let tileable = seam.is_none();
+        let after = self.distance(&image, tileable);
         let subbands = self.level.full.pyramid.subbands().to_vec();
-        let [with_original, with_reference] = self.arrangement(&ours.periodic, &image, periodic);
+        let [with_original, with_reference] = self.arrangement(&ours.periodic, &image, tileable);
         Ok(Metamer {
             image,
             subbands,
