@@ -331,7 +331,7 @@ fn one_group_of_a_scene_of_two_hundred_thousand_is_read() {
     std::fs::write(&path, format!("{corners}{groups}")).unwrap();
     let part = asperity_shape::load_part(&path, Some("block199999"));
     std::fs::remove_file(&path).unwrap();
-    let Ok(asperity_shape::Mesh::Surface(part)) = part else { panic!("{part:?}") };
+    let Ok(Mesh::Surface(part)) = part else { panic!("{part:?}") };
     assert_eq!(part.triangles.len(), 1);
 }
 
@@ -344,7 +344,7 @@ fn a_ply_of_strips_is_the_body() {
             .to_owned();
     POINTS.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
     text.push_str("20 0 4 1 5 2 6 3 7 0 4 -1 0 1 3 2 -1 4 7 5 6\n");
-    let asperity_shape::Mesh::Surface(mesh) = parse(Path::new("box.ply"), text.as_bytes()).unwrap() else {
+    let Mesh::Surface(mesh) = parse(Path::new("box.ply"), text.as_bytes()).unwrap() else {
         panic!("no surface")
     };
     let volume_m3: f64 = mesh
