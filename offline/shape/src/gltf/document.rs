@@ -293,7 +293,12 @@ fn at_file(path: &Path, what: impl Into<String>, right: &str) -> ShapeError {
 fn file(path: &Path) -> Result<Vec<u8>, ShapeError> {
     let readable =
         |error: std::io::Error| at_file(path, format!("cannot be read ({error})"), "give a readable file");
-    let length = std::fs::metadata(path).map_err(readable)?.len();
+    let found = std::fs::metadata(path).map_err(readable)?;
+    // A pipe that a document names would be waited for without end.
+    if !found.is_file() {
+        return Err(at_file(path, "is no file", "give a readable file"));
+    }
+    let length = found.len();
     if length > LARGEST {
         return Err(at_file(path, format!("has {length} bytes"), "must be at most 1 GiB"));
     }
