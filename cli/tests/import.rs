@@ -313,7 +313,8 @@ fn an_extension_that_a_document_requires_and_nobody_reads_is_named() {
     let (mut document, bytes) = document();
     document["extensionsRequired"] = json!(["EXT_unknown", "KHR_mesh_quantization"]);
     put(folder.path(), &document, &bytes);
-    let (status, out, _) = message(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
+    let (status, out, _) =
+        message(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
     let report: Value = serde_json::from_str(&out).unwrap();
     let warnings = report["warnings"].to_string();
     assert!(

@@ -5,6 +5,7 @@ use crate::parts::Names;
 use crate::polygon;
 use crate::surface_mesh::{MOST_TRIANGLES, SurfaceMesh};
 use serde::Deserialize;
+use serde::de::Error as _;
 use serde_ply::{DeserializeError, PlyReader};
 use std::borrow::Cow;
 use std::io::Read;
@@ -74,6 +75,11 @@ fn elements(bytes: &[u8]) -> Result<(Vec<Vertex>, Vec<Face>), DeserializeError> 
     let mut reader = PlyReader::from_reader(bytes.chain(end))?;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     while let Some(element) = reader.current_element() {
+        // Rows without a property take no bytes, and as many as a header likes would be counted.
+        if element.count > bytes.len() {
+            let what = format!("{} rows of {} in {} bytes", element.count, element.name, bytes.len());
+            return Err(DeserializeError::custom(what));
+        }
         match element.name.as_str() {
             "vertex" => vertices = reader.next_element()?,
             "face" => faces.extend(reader.next_element::<Vec<Face>>()?),
@@ -147,5 +153,13 @@ mod tests {
             assert!(parse(&binary[..binary.len() * part / 100]).is_err(), "{part}");
         }
         assert!(parse(text.replace("4 0 1 2 3", "4 0 1 2 9").as_bytes()).is_err());
+    }
+
+    #[test]
+    fn rows_that_a_file_cannot_hold_are_refused_at_once() {
+        let nothing =
+            "ply\nformat binary_little_endian 1.0\nelement nothing 18446744073709551615\nend_header\n";
+        let error = parse(nothing.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("18446744073709551615 rows of nothing"), "{error}");
     }
 }
