@@ -60,9 +60,9 @@ pub fn run(verb: Verb) -> Result<(), CliError> {
     }
 }
 
-/// The grey values of a picture, 0–1.
+/// The grey values of a map, 0–1; those of a normal map are no heights.
 fn grey(path: &Path) -> Result<Raster, CliError> {
-    channel(path, Channel::Luma)
+    image_io::load_map(path, Channel::Luma).map(|image| image.raster).map_err(CliError::from_error)
 }
 
 /// One channel of a picture, 0–1.

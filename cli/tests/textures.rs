@@ -358,3 +358,18 @@ fn maps_without_relief_and_of_one_height_are_no_failure() {
     assert!(number(&heights, "relief_per_px").abs() < 1e-6, "{heights}");
     assert!(grey(&scene, "height.png").values.iter().all(|v| (0.0..=1.0).contains(v)));
 }
+
+#[test]
+fn a_normal_map_is_neither_compared_nor_ranked_as_heights() {
+    let scene = with_maps(&[("ground.png", ground(96))]);
+    std::fs::create_dir(scene.path("maps")).unwrap();
+    std::fs::copy(scene.path("ground.png"), scene.path("maps/other.png")).unwrap();
+    for normals in ["normal.png", "maps/normal.png"] {
+        save_normal_map(&scene.path(normals), slopes_of_bumps, true, 96);
+    }
+    let compared = asperity(scene.folder.path(), &["texture", "compare", "ground.png", "normal.png"]);
+    assert_refused(&compared, &["normal.png", "is a normal map"]);
+    let ranked = report(&scene, &["rank", "ground.png", "maps"]);
+    assert!(ranked["ranking"].as_array().is_some_and(|files| files.len() == 1), "{ranked}");
+    assert!(ranked["warnings"].to_string().contains("normal.png"), "{ranked}");
+}
