@@ -50,8 +50,8 @@ impl Plugin for AvianTouchPlugin {
             Ok(probes) => {
                 probes.named(RIGID_PROBE).for_each(|(name, id)| touch.name_own_probe(&name, id));
                 let pairs = BTreeMap::new();
-                let vec3 = HashSet::new();
-                app.insert_resource(Listener { probes, pairs, next_contact: FIRST_CONTACT, vec3 });
+                let warned = HashSet::new();
+                app.insert_resource(Listener { probes, pairs, next_contact: FIRST_CONTACT, warned });
                 app.add_systems(
                     FixedPostUpdate,
                     listen.after(PhysicsSystems::Last).in_set(TouchSystems::Report),
@@ -69,7 +69,7 @@ struct Listener {
     pairs: BTreeMap<[Entity; 2], Listed>,
     next_contact: u64,
     /// Entities that were warned of because they are silent; none: the world.
-    vec3: HashSet<Option<Entity>>,
+    warned: HashSet<Option<Entity>>,
 }
 
 #[derive(Default)]
@@ -223,7 +223,7 @@ fn listen(
     mut listener: ResMut<Listener>,
     mut touch: ResMut<Touch>,
 ) {
-    let Listener { probes, pairs, next_contact, vec3: warned } = &mut *listener;
+    let Listener { probes, pairs, next_contact, warned } = &mut *listener;
     let gravity_m_s2 = gravity.0.length();
     if gravity_m_s2 > ODD_GRAVITY_M_S2 && warned.insert(None) {
         log::warn!("asperity: {}", Notice::Gravity { m_s2: gravity_m_s2 });
