@@ -92,7 +92,7 @@ fn attack_decay_and_release_are_ramps_and_told() {
 }
 
 #[test]
-fn a_release_under_a_falling_curve_is_as_weak_as_both_make_it() {
+fn a_release_under_a_falling_curve_is_weak_by_both() {
     let release = r#","EventDuration":0.435"#;
     let held = event("Continuous", 0.0, release).replace(
         r#""EventParameters":["#,

@@ -258,7 +258,7 @@ fn five_strokes_arrive_as_the_causal_reduction_has_them() {
 
 /// A blow is shorter than the first frame that a runtime wants.
 #[test]
-fn blows_and_recordings_of_blows_arrive_as_short_and_as_strong_as_they_were() {
+fn blows_and_their_recordings_arrive_as_short_and_strong() {
     let errors_db = arrives("a bar that is struck", 4.0, &strikes);
     assert!(errors_db.iter().all(|db| *db <= 1.0), "{errors_db:?}");
     let Some(folder) = corpus("impacts") else { return };

@@ -119,7 +119,7 @@ fn curved_sheets_reach_the_least_energy_without_flips() {
 }
 
 #[test]
-fn the_teeth_of_a_flat_comb_are_not_left_squeezed_as_they_were_first_guessed() {
+fn the_teeth_of_a_flat_comb_are_not_left_squeezed() {
     const CELLS: usize = 40;
     let whole = sheet(CELLS, |u, v| [0.1 * u, 0.1 * v, 0.0]);
     let teeth = |cell: usize| cell / CELLS < 6 || cell % CELLS % 8 < 5;

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn xml_that_breaks_off_at_a_line_s_end_is_refused_in_one_line() {
+    fn xml_cut_off_at_a_lines_end_is_refused_in_one_line() {
         let refused = read("<modelSet><model/\n</modelSet>").unwrap_err().to_string();
         assert!(refused.starts_with("models: ") && refused.lines().count() == 1, "{refused}");
     }
