@@ -261,14 +261,20 @@ impl Pieces {
             let (from, to) = (ends(from_s, true), ends(to_s, false));
             let mut cuts = parts(&from, &to);
             // A ramp under a curve that moves falls twice as fast as either.
-            if sounding.iter().any(|h| inside(h, from_s) != inside(h, to_s)) {
+            let ramps = sounding.iter().any(|h| inside(h, from_s) != inside(h, to_s));
+            if ramps {
                 let halves: Vec<f64> = cuts.windows(2).map(|cut| 0.5 * (cut[0] + cut[1])).collect();
                 cuts.extend(halves);
                 cuts.sort_by(f64::total_cmp);
             }
             for part in cuts {
                 let time_s = if part == 1.0 { to_s } else { from_s + part * (to_s - from_s) };
-                let power: f64 = ends(time_s, part < 1.0).iter().map(|level| level * level).sum();
+                let levels = if ramps {
+                    ends(time_s, part < 1.0)
+                } else {
+                    from.iter().zip(&to).map(|(a, b)| a + part * (b - a)).collect()
+                };
+                let power: f64 = levels.iter().map(|level| level * level).sum();
                 points.push((time_s, power.min(1.0)));
             }
         }
