@@ -60,7 +60,7 @@ fn ground_that_sinks_under_a_changing_force_tells_its_compliance() {
     let hard = pressed(0.0, 4).unwrap();
     assert!(hard.compliance.is_none(), "{:?}", hard.compliance);
     assert!(
-        hard.warnings.iter().any(|warning| warning.starts_with("compliance is not told")),
+        hard.warnings.iter().any(|warning| warning.starts_with("compliance is not estimated")),
         "{:?}",
         hard.warnings
     );
