@@ -160,7 +160,9 @@ impl Row {
         touching.actuator = self.actuator()?;
         touching.probe = self.thing(PROBE, "probe", &session.probes)?;
         touching.holder = self.thing(HOLDER, "holder", &session.bodies)?;
-        Ok(touching.gain(self.written(GAIN).unwrap_or(1.0)).importance(self.written(IMPORTANCE).unwrap_or(1.0)))
+        Ok(touching
+            .gain(self.written(GAIN).unwrap_or(1.0))
+            .importance(self.written(IMPORTANCE).unwrap_or(1.0)))
     }
 
     fn impact(&self, session: &Session) -> Result<Impact, String> {
