@@ -1028,7 +1028,7 @@ void asp_render_interleaved(struct asp_renderer *renderer,
                             uint32_t frames,
                             const int32_t *map);
 
-/// Tells the engine which share of its time the last block took (1 = all of it); above that the
+/// Reports which share of its time the last block took (1 = all of it); above that the
 /// least audible work is left out. For the audio thread.
 void asp_report_load(struct asp_renderer *renderer, float load);
 
