@@ -1,7 +1,7 @@
 //! Moving picture: heights of a surface that changes, tile by tile, for a program that draws it.
 //!
 //! The simulation writes tiles that changed, a reader takes those it has not seen; neither waits.
-//! What is drawn is always the latest: a reader that comes late loses what lay between, and gets
+//! The picture is always the latest: a reader that comes late loses what lay between, and gets
 //! how many states of tiles that was.
 //!
 //! ```text

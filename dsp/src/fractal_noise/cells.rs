@@ -117,8 +117,8 @@ impl KnownCell {
     }
 
     /// Becomes the cell of an octave that a position in 2⁻³² cells of the coarsest one is in.
-    /// Whether positions within these bounds are in it: by plain numbers, for which no vector
-    /// has to wait until they are stored.
+    /// Tests whether positions within these bounds are in it, by plain numbers: no vector has to
+    /// wait until they are stored.
     #[cold]
     pub(super) fn follow(&mut self, octave: &Octave, position: [i64; 2], within: &Bounds) -> bool {
         let Octave { offset, key, index: i, .. } = *octave;
