@@ -157,20 +157,20 @@ impl Scene {
         }
         let required = document.list("extensionsRequired").iter().filter_map(Value::as_str);
         for name in required.filter(|name| !READ.contains(name)) {
-            scene.tell(format!("{name}, which the document requires, is not read"));
+            scene.remark(format!("{name}, which the document requires, is not read"));
         }
         if scene.bodies.is_empty() && scene.surfaces.is_empty() && scene.unwrapped.is_empty() {
             let right = format!(
                 "must have a node with {EXTENSION}, or a closed mesh or a normal texture that a node places"
             );
-            let why = scene.remarks.first().map_or(String::new(), |remarks| format!(" ({remarks})"));
+            let why = scene.remarks.first().map_or(String::new(), |remark| format!(" ({remark})"));
             let what = format!("hold nothing that sounds or is touched{why}");
             return Err(document.wrong("nodes", what, &right).into());
         }
         Ok(scene)
     }
 
-    fn tell(&mut self, what: String) {
+    fn remark(&mut self, what: String) {
         if !self.remarks.contains(&what) {
             self.remarks.push(what);
         }
@@ -210,8 +210,8 @@ impl Scene {
         if let Some(model) = model {
             let scale = |column: usize| map[column].iter().map(|x| x * x).sum::<f64>().sqrt();
             if (0..3).any(|column| (scale(column) - 1.0).abs() > 1e-6) {
-                let remarks = "scales of nodes do not reach modes: they and their shapes are those of the model's own size";
-                self.tell(remarks.to_owned());
+                let remark = "scales of nodes do not reach modes: they and their shapes are those of the model's own size";
+                self.remark(remark.to_owned());
             }
             let text = bodies::modes(document, model, &format!("{at}.modalModel"), gain)?;
             let file = format!("{name}.modes.json");
@@ -239,7 +239,7 @@ impl Scene {
     ) -> Result<(), CliError> {
         let finish = finish::finish(document, surface, at)?;
         if !surface["profile"].is_null() {
-            self.tell(
+            self.remark(
                 "stored profiles are read past: their surfaces are made from roughness, length and slope"
                     .to_owned(),
             );
@@ -275,7 +275,7 @@ impl Scene {
             let heights = finish::heights(document, texture, [width_m, height_m], at)?;
             relief_m = heights.relief_m;
             if relief_m > MOST_RELIEF_M {
-                self.tell(format!("{name}: a relief of {relief_m:.3} m is held at {MOST_RELIEF_M} m"));
+                self.remark(format!("{name}: a relief of {relief_m:.3} m is held at {MOST_RELIEF_M} m"));
                 relief_m = MOST_RELIEF_M;
             }
             let file = format!("{name}.heights.png");

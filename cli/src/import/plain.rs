@@ -36,14 +36,16 @@ impl Scene {
             let name = format!("{}-{mesh}", plain(named.unwrap_or("mesh")));
             let body = match bodies.get(&mesh) {
                 Some(body) => {
-                    self.tell(
+                    self.remark(
                         "meshes that several nodes place are bodies once, of the first node's size"
                             .to_owned(),
                     );
                     body.clone()
                 }
                 None if tried == MOST_BODIES => {
-                    self.tell(format!("the first {MOST_BODIES} meshes are bodies, the others are left out"));
+                    self.remark(format!(
+                        "the first {MOST_BODIES} meshes are bodies, the others are left out"
+                    ));
                     None
                 }
                 None => {
@@ -65,7 +67,7 @@ impl Scene {
             }
         }
         if !self.bodies.is_empty() {
-            self.tell(format!(
+            self.remark(format!(
                 "a glTF does not say what bodies are made of: {material} is taken, --material names another"
             ));
         }
@@ -88,7 +90,7 @@ impl Scene {
         for (p, primitive) in primitives.as_array().into_iter().flatten().enumerate() {
             let at = format!("meshes[{mesh}].primitives[{p}]");
             if document.is_packed(primitive) {
-                self.tell(format!("{at} is packed by Draco or meshopt and is left out"));
+                self.remark(format!("{at} is packed by Draco or meshopt and is left out"));
                 continue;
             }
             let Some((points, triangles)) = document.triangles(primitive, &at)? else { continue };
@@ -105,7 +107,9 @@ impl Scene {
                 self.files.push((file.clone(), bytes));
                 self.unwrapped.push(Unwrap { file, unwrapped });
             }
-            Err(error) => self.tell(format!("mesh {name} is not unwrapped: {}; {}", error.what, error.right)),
+            Err(error) => {
+                self.remark(format!("mesh {name} is not unwrapped: {}; {}", error.what, error.right))
+            }
         }
         if options.surfaces_only {
             return Ok(false);
@@ -120,7 +124,7 @@ impl Scene {
         let mut body = match asperity_shape::make(Mesh::Surface(surface), &making, &mut |_| ()) {
             Ok(body) => body,
             Err(error) => {
-                self.tell(format!("mesh {name} is no body: it {}", error.what));
+                self.remark(format!("mesh {name} is no body: it {}", error.what));
                 return Ok(false);
             }
         };

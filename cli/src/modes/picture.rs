@@ -23,8 +23,8 @@ pub fn svg(name: &str, body: &SolvedBody, damping: &Damping, file: &ModesFile) -
         body.elements,
         body.degrees_of_freedom
     ));
-    for remarks in &body.remarks {
-        figure = figure.subtitle(format!("warning: {remarks}"));
+    for remark in &body.remarks {
+        figure = figure.subtitle(format!("warning: {remark}"));
     }
     let shown = body.frequency_hz.len().min(SHAPES);
     for row in (0..shown).collect::<Vec<_>>().chunks(4) {

@@ -131,14 +131,14 @@ impl Pieces {
             Some("HapticIntensityControl") => Some(&mut self.intensity),
             Some("HapticSharpnessControl") => Some(&mut self.sharpness),
             _ => {
-                self.tell("curves of other parameters than intensity and sharpness are read past");
+                self.remark("curves of other parameters than intensity and sharpness are read past");
                 None
             }
         }
     }
 
-    fn tell(&mut self, what: &str) {
-        if !self.remarks.iter().any(|remarks| remarks == what) {
+    fn remark(&mut self, what: &str) {
+        if !self.remarks.iter().any(|remark| remark == what) {
             self.remarks.push(what.to_owned());
         }
     }
@@ -162,7 +162,7 @@ impl Pieces {
         }
         let is_held = event.get("EventType").and_then(Value::as_str) == Some("HapticContinuous");
         if is_held && (attack_s > 0.0 || release_s > 0.0 || !sustained) {
-            self.tell("attack, decay and release of events are read as straight ramps of as many seconds");
+            self.remark("attack, decay and release of events are read as straight ramps of as many seconds");
         }
         match event.get("EventType").and_then(Value::as_str) {
             Some("HapticTransient") => {
@@ -174,7 +174,9 @@ impl Pieces {
                 let decay_s = (!sustained).then_some(decay_s);
                 self.held.push(Held { begins_s, ends_s, intensity, sharpness, attack_s, release_s, decay_s });
             }
-            Some("AudioCustom" | "AudioContinuous") => self.tell("sounds are no vibration and are read past"),
+            Some("AudioCustom" | "AudioContinuous") => {
+                self.remark("sounds are no vibration and are read past")
+            }
             other => {
                 let what = format!("{} is unknown", other.unwrap_or("nothing"));
                 let right = "must be HapticContinuous, HapticTransient, AudioCustom or AudioContinuous";
