@@ -120,8 +120,8 @@ fn reported(stroke: &Stroke, wraps: bool, mut also: impl FnMut(&mut Scene, f64))
 
 /// Slips that no single report shows: times that stand, forces and blows.
 fn habits(scene: &Scene) -> Vec<SilenceReason> {
-    let mut message = scene.why_silent();
-    message.retain(|reason| {
+    let mut found = scene.why_silent();
+    found.retain(|reason| {
         matches!(
             reason,
             SilenceReason::TimeStands { .. }
@@ -130,15 +130,13 @@ fn habits(scene: &Scene) -> Vec<SilenceReason> {
                 | SilenceReason::NeverPressed
         )
     });
-    message
+    found
 }
 
 fn contradictions(scene: &Scene) -> Vec<Contradiction> {
-    let message = scene.why_silent().into_iter();
-    message
-        .filter_map(
-            |reason| if let SilenceReason::Contradicts(message) = reason { Some(message) } else { None },
-        )
+    let found = scene.why_silent().into_iter();
+    found
+        .filter_map(|reason| if let SilenceReason::Contradicts(found) = reason { Some(found) } else { None })
         .collect()
 }
 
@@ -158,23 +156,23 @@ fn scaled_velocity(stroke: &mut Stroke, scale: f64) {
     each(stroke, |report, _| report.velocity_m_s = report.velocity_m_s.map(|v| v * scale));
 }
 
-fn is(message: &Contradiction, meant: Likely) -> bool {
-    matches!(message, Contradiction::Speed { likely, .. } if *likely == meant)
+fn is(found: &Contradiction, meant: Likely) -> bool {
+    matches!(found, Contradiction::Speed { likely, .. } if *likely == meant)
 }
 
 const PLANE: f64 = 6.0;
 
 fn slips() -> [Slip; 14] {
     [
-        ("uv in metres", |s| scaled_uv(s, 1.0), |message, _| is(message, Likely::UvInMetres)),
-        ("uv in centimetres", |s| scaled_uv(s, 100.0), |message, _| is(message, Likely::UvInCentimetres)),
-        ("uv in millimetres", |s| scaled_uv(s, 1000.0), |message, _| is(message, Likely::UvInMillimetres)),
+        ("uv in metres", |s| scaled_uv(s, 1.0), |found, _| is(found, Likely::UvInMetres)),
+        ("uv in centimetres", |s| scaled_uv(s, 100.0), |found, _| is(found, Likely::UvInCentimetres)),
+        ("uv in millimetres", |s| scaled_uv(s, 1000.0), |found, _| is(found, Likely::UvInMillimetres)),
         (
             "uv in texels",
             |s| each(s, |report, _| report.uv = [report.uv[0] * 1024.0, report.uv[1] * 768.0]),
-            |message, s| {
+            |found, s| {
                 // 1024 texels over a metre and millimetres are the same motion.
-                is(message, Likely::UvInTexels)
+                is(found, Likely::UvInTexels)
                     || s.size_m.iter().zip([1024.0, 768.0]).all(|(m, n)| (m * 1e3 / n).ln().abs() < 0.15)
             },
         ),
@@ -185,37 +183,37 @@ fn slips() -> [Slip; 14] {
                     report.velocity_m_s = [0, 1].map(|c| report.velocity_m_s[c] / size_m[c])
                 })
             },
-            |message, _| is(message, Likely::UvInMetres),
+            |found, _| is(found, Likely::UvInMetres),
         ),
         (
             "velocity in mm/s",
             |s| scaled_velocity(s, 1000.0),
-            |message, _| is(message, Likely::VelocityInMillimetres),
+            |found, _| is(found, Likely::VelocityInMillimetres),
         ),
         (
             "velocity in cm/s",
             |s| scaled_velocity(s, 100.0),
-            |message, _| is(message, Likely::VelocityInCentimetres),
+            |found, _| is(found, Likely::VelocityInCentimetres),
         ),
         (
             "velocity backwards",
             |s| scaled_velocity(s, -1.0),
-            |message, _| matches!(message, Contradiction::Turned { axes: [true, true], .. }),
+            |found, _| matches!(found, Contradiction::Turned { axes: [true, true], .. }),
         ),
         (
             "v upwards",
             |s| each(s, |report, _| report.velocity_m_s[1] = -report.velocity_m_s[1]),
-            |message, _| matches!(message, Contradiction::Turned { axes: [false, true], .. }),
+            |found, _| matches!(found, Contradiction::Turned { axes: [false, true], .. }),
         ),
         (
             "u and v swapped",
             |s| each(s, |report, _| report.velocity_m_s.swap(0, 1)),
-            |message, _| matches!(message, Contradiction::Swapped { .. }),
+            |found, _| matches!(found, Contradiction::Swapped { .. }),
         ),
         (
             "begin at every step",
             |s| each(s, |report, _| report.begins = true),
-            |message, _| matches!(message, Contradiction::BeginsAgain { .. }),
+            |found, _| matches!(found, Contradiction::BeginsAgain { .. }),
         ),
         (
             "two fingers under one number",
@@ -224,9 +222,7 @@ fn slips() -> [Slip; 14] {
                     |report: &Report| Report { uv: [report.uv[0] + 0.04 / 0.06, report.uv[1]], ..*report };
                 s.reports = s.reports.iter().flat_map(|report| [*report, second(report)]).collect();
             },
-            |message, _| {
-                matches!(message, Contradiction::TwoPlaces { .. } | Contradiction::BeginsAgain { .. })
-            },
+            |found, _| matches!(found, Contradiction::TwoPlaces { .. } | Contradiction::BeginsAgain { .. }),
         ),
         (
             "a plane of another size",
@@ -235,7 +231,7 @@ fn slips() -> [Slip; 14] {
                     report.uv = [0, 1].map(|c| report.uv[c] * size_m[c] / (PLANE * size_m[c].sqrt()))
                 })
             },
-            |message, s| match message {
+            |found, s| match found {
                 Contradiction::Speed { likely: Likely::AnotherSize(plane_m), .. } => [0, 1].iter().all(|c| {
                     plane_m[*c].is_none_or(|m| (m / (PLANE * s.size_m[*c].sqrt())).ln().abs() < 0.1)
                 }),
@@ -245,7 +241,7 @@ fn slips() -> [Slip; 14] {
         (
             "times in milliseconds",
             |s| each(s, |report, _| report.t *= 1000.0),
-            |message, _| is(message, Likely::TimesInMilliseconds),
+            |found, _| is(found, Likely::TimesInMilliseconds),
         ),
     ]
 }
@@ -261,12 +257,12 @@ fn a_contradicting_log_is_reported_with_the_likely_unit() {
                 let mut stroke = stroke(kind, &mut rng);
                 let whole = stroke.clone();
                 spoil(&mut stroke);
-                let message = message(&stroke, true);
+                let found = message(&stroke, true);
                 tried += 1;
-                if message.len() == 1 && is_right(&message[0], &whole) {
+                if found.len() == 1 && is_right(&found[0], &whole) {
                     right += 1;
                 } else {
-                    missed.push(format!("{slip}, {kind}: {message:?} of {:?}", whole.size_m));
+                    missed.push(format!("{slip}, {kind}: {found:?} of {:?}", whole.size_m));
                 }
             }
         }
@@ -354,10 +350,10 @@ fn a_right_log_is_not_called_a_contradiction() {
                 scene.report(t, ContactEvent::Impact(Impact::on(body))).unwrap();
             }
         });
-        let message = contradictions(&scene);
+        let found = contradictions(&scene);
         let habits = habits(&scene);
-        if !message.is_empty() || !habits.is_empty() {
-            alarms.push(format!("{number}, {kind}: {message:?} {habits:?} of {:?}", stroke.size_m));
+        if !found.is_empty() || !habits.is_empty() {
+            alarms.push(format!("{number}, {kind}: {found:?} {habits:?} of {:?}", stroke.size_m));
         }
     }
     assert!(alarms.is_empty(), "{} false alarms\n{}", alarms.len(), alarms.join("\n"));
@@ -442,8 +438,8 @@ fn taps_of_one_number_and_a_finger_that_rests_are_right() {
 fn both_speeds_and_the_unit_stand_in_the_sentence() {
     let mut stroke = stroke("arc", &mut Rng::new(3));
     scaled_velocity(&mut stroke, 1000.0);
-    let [message] = message(&stroke, true)[..] else { panic!("nothing was told") };
-    let text = message.to_string();
+    let [found] = message(&stroke, true)[..] else { panic!("nothing was told") };
+    let text = found.to_string();
     assert!(text.starts_with("uv moves at 0.") && text.contains("velocity_m_s says "), "{text}");
     assert!(text.contains("is velocity_m_s in mm/s?"), "{text}");
 }
@@ -489,8 +485,8 @@ fn measured_trajectories_are_right_and_in_millimetres_they_are_not() {
         assert_eq!(message(&stroke, false), []);
         let mut spoilt = stroke.clone();
         scaled_uv(&mut spoilt, 1000.0);
-        let message = message(&spoilt, false);
-        assert!(message.len() == 1 && is(&message[0], Likely::UvInMillimetres), "{message:?}");
+        let found = message(&spoilt, false);
+        assert!(found.len() == 1 && is(&found[0], Likely::UvInMillimetres), "{found:?}");
     }
 }
 
@@ -522,16 +518,16 @@ fn a_point_hopping_among_corners_without_velocity_is_reported() {
     for side_m in [0.05, 0.1, 0.3, 1.0] {
         for every in [1, 2, 3, 5, 10] {
             for seed in 0..8 {
-                let message = hopping(side_m, every, false, seed);
-                let right = |message: &Contradiction| {
-                    matches!(message, Contradiction::Hops { .. } | Contradiction::TwoPlaces { .. })
+                let found = hopping(side_m, every, false, seed);
+                let right = |found: &Contradiction| {
+                    matches!(found, Contradiction::Hops { .. } | Contradiction::TwoPlaces { .. })
                 };
-                if !(message.len() == 1 && right(&message[0])) {
-                    missed.push(format!("{side_m} m, every {every}, seed {seed}: {message:?}"));
+                if !(found.len() == 1 && right(&found[0])) {
+                    missed.push(format!("{side_m} m, every {every}, seed {seed}: {found:?}"));
                 }
                 let steady = hopping(side_m, every, true, seed);
                 assert!(
-                    !steady.iter().any(|message| matches!(message, Contradiction::Hops { .. })),
+                    !steady.iter().any(|found| matches!(found, Contradiction::Hops { .. })),
                     "{steady:?}"
                 );
             }

@@ -86,8 +86,8 @@ fn half_the_size_is_an_octave_up() {
     assert_eq!(centres(&half), [1000.0, 3000.0, 9000.0]);
     let decay_per_s = |model: &ModalModel| model.diffuse.as_ref().unwrap().bands[0].parts[0].decay_per_s;
     let damping = Material::WOOD.damping();
-    let message = 60.0 * damping.decay_per_s(1000.0) / damping.decay_per_s(500.0);
-    assert!((decay_per_s(&half) / message - 1.0).abs() < 1e-12);
+    let ratio = 60.0 * damping.decay_per_s(1000.0) / damping.decay_per_s(500.0);
+    assert!((decay_per_s(&half) / ratio - 1.0).abs() < 1e-12);
     // In what is heard, too: what was about a centre is about twice as much.
     let sounds = |model: &ModalModel| -> Vec<Vec<f32>> {
         (0..8).map(|seed| struck(model, seed, &[(0.0, 1.0)], 256)).collect()

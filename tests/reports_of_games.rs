@@ -252,12 +252,12 @@ fn a_leaping_stick_warns_with_its_remedy_and_a_finger_does_not() {
         let take = common::render(config, ribs, &stroke(SIDE_M, 0.2, force_n, 1.0), &Options::default());
         (
             take.stats.blows,
-            take.why_silent.iter().any(|message| matches!(message, SilenceReason::Leapt { .. })),
+            take.why_silent.iter().any(|reported| matches!(reported, SilenceReason::Leapt { .. })),
         )
     };
-    let (blows, message) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
+    let (blows, reported) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
     println!("{blows} blows");
-    assert!(blows > 5 && message, "{blows} blows, told: {message}");
+    assert!(blows > 5 && reported, "{blows} blows, told: {reported}");
     assert_eq!(over_ribs(Probe::default(), FORCE_N), (0, false));
 }
 
@@ -281,7 +281,7 @@ impl Tap for MeanForce {
 
 #[test]
 fn a_probe_off_a_roofs_crest_presses_as_computed_or_is_reported() {
-    let (mut message, mut tried) = (0, 0);
+    let (mut reported, mut tried) = (0, 0);
     for (name, probe) in asperity::PROBE_PRESETS {
         for (roof_m, slope) in [(0.5, 0.5), (1.0, 0.5), (0.5, 0.2), (0.25, 0.1)] {
             for (speed_m_s, force_n) in [(0.3, 0.5), (1.0, 0.5), (1.0, 2.0)] {
@@ -305,17 +305,17 @@ fn a_probe_off_a_roofs_crest_presses_as_computed_or_is_reported() {
                 let take = render_tapped(config, roofs, &log, &Options::default(), &mut mean);
                 let off = mean.contact_n / mean.pressed_n - 1.0;
                 let leapt =
-                    take.why_silent.iter().any(|message| matches!(message, SilenceReason::Leapt { .. }));
+                    take.why_silent.iter().any(|reported| matches!(reported, SilenceReason::Leapt { .. }));
                 let what = format!("{name}, roofs of {roof_m} m, {slope} m/m, {speed_m_s} m/s, {force_n} N");
                 println!("{what}: {:+.2} %, {} blows, told {leapt}", 100.0 * off, take.stats.blows);
                 assert!(off.abs() <= 0.01 || leapt, "{what}: {:+.2} % and no word", 100.0 * off);
                 let slow = name == "fingertip" && speed_m_s < 0.5;
                 assert!(!(slow && leapt), "{what}: a slow finger stays on the ground");
-                (message, tried) = (message + usize::from(leapt), tried + 1);
+                (reported, tried) = (reported + usize::from(leapt), tried + 1);
             }
         }
     }
-    println!("{message} of {tried} told");
+    println!("{reported} of {tried} told");
 }
 
 #[test]

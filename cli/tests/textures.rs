@@ -97,9 +97,9 @@ fn distances_are_those_of_the_file_for_any_method() {
         let settings = MetamerOptions { bands: 3, ..MetamerOptions::default() };
         let mut feel = Statistics::new(&reference, 128, 128, &settings).unwrap();
         let found = feel.distance(&heights, true);
-        for (message, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
-            let message = number(&made, message);
-            assert!((message - found).abs() <= 0.05 * found, "{more:?}: told {message}, in the file {found}");
+        for (stated, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
+            let stated = number(&made, stated);
+            assert!((stated - found).abs() <= 0.05 * found, "{more:?}: told {stated}, in the file {found}");
         }
         let limit = file.values.iter().filter(|grey| **grey <= 0.0 || **grey >= 1.0).count();
         let stretched = (offset, scale) != (0.0, 1.0);
@@ -166,15 +166,15 @@ fn a_metamer_has_the_stated_size_and_coarse_texels_warn() {
         arguments.extend(["--width-mm", width_mm, "--base-mm", "3", "--relief-mm", "1.5"]);
         let made = report(&scene, &arguments);
         let (volume, size, closed) = solid(&std::fs::read(scene.path("both.stl")).unwrap());
-        let message =
+        let stated =
             [number(&made, "width_mm"), number(&made, "height_mm"), 3.0 + number(&made, "relief_mm")];
-        assert!(closed && message[0].to_string() == width_mm && (message[2] - 4.5).abs() < 1e-9);
+        assert!(closed && stated[0].to_string() == width_mm && (stated[2] - 4.5).abs() < 1e-9);
         assert!(
-            size.iter().zip(message).all(|(size, message)| (size - message).abs() < 1e-4),
-            "{size:?} {message:?}"
+            size.iter().zip(stated).all(|(size, stated)| (size - stated).abs() < 1e-4),
+            "{size:?} {stated:?}"
         );
         let mean_mm = 1.5 * grey(&scene, "both.png").mean();
-        assert!((volume / (message[0] * message[1] * (3.0 + mean_mm)) - 1.0).abs() < 2e-3, "{volume}");
+        assert!((volume / (stated[0] * stated[1] * (3.0 + mean_mm)) - 1.0).abs() < 2e-3, "{volume}");
         assert_eq!(made["warnings"].to_string().contains("0.25 mm"), coarse);
     }
     for (bad, field) in [("--base-mm", "base_m"), ("--width-mm", "texel_m")] {
@@ -182,8 +182,8 @@ fn a_metamer_has_the_stated_size_and_coarse_texels_warn() {
         arguments.extend(print);
         arguments[9] = "other.stl";
         arguments.extend([bad, "1e9"]);
-        let message = asperity(scene.folder.path(), &arguments);
-        assert_refused(&message, &[field]);
+        let stated = asperity(scene.folder.path(), &arguments);
+        assert_refused(&stated, &[field]);
         assert!(!scene.path("other.stl").exists());
     }
 }
@@ -201,7 +201,7 @@ fn a_height_map_becomes_a_solid_of_its_size_in_either_format() {
     let (low, high) = heights.range();
     let exact = [30.0, 20.0, 3.0 + 1.5 * (high - low)];
     assert!(
-        closed && size.iter().zip(exact).all(|(size, message)| (size / message - 1.0).abs() < 1e-6),
+        closed && size.iter().zip(exact).all(|(size, stated)| (size / stated - 1.0).abs() < 1e-6),
         "{size:?}"
     );
     let exact = 600.0 * (3.0 + 1.5 * (heights.mean() - low));
@@ -210,8 +210,8 @@ fn a_height_map_becomes_a_solid_of_its_size_in_either_format() {
     // that.
     make("rough.glb");
     let solve = ["modes", "rough.glb", "--material", "plastic", "--max-modes", "3", "-o", "r.json", "--json"];
-    let message = asperity(scene.folder.path(), &solve);
-    let solved: Value = serde_json::from_slice(&message.stdout).unwrap();
+    let stated = asperity(scene.folder.path(), &solve);
+    let solved: Value = serde_json::from_slice(&stated.stdout).unwrap();
     assert!((number(&solved, "volume_m3") * 1e9 / exact - 1.0).abs() < 0.05, "{solved}");
     let refused = |output: &str, base: &str| {
         let arguments = ["texture", "solid-of", "rough.png", "-o", output, "--base-mm", base];
@@ -255,23 +255,23 @@ fn five_textures_are_told_apart_and_their_metamers_are_not() {
     let maps = ["compare", "1.png", "2.png", "3.png", "4.png", "5.png"];
     let mut arguments = maps.to_vec();
     arguments.extend(["--metamers", "--strokes", "60"]);
-    let message = report(&scene, &arguments);
-    let mean = |table: &str| number(&message[table], "mean");
+    let stated = report(&scene, &arguments);
+    let mean = |table: &str| number(&stated[table], "mean");
     let (originals, single, metamers) = (mean("originals"), mean("single_pass"), mean("metamers"));
     println!("originals {originals:.2}, single pass {single:.2}, metamers {metamers:.2}");
-    assert!(originals > 0.95 && single > 0.8, "{message}");
-    assert!(metamers <= 0.65, "{message}");
+    assert!(originals > 0.95 && single > 0.8, "{stated}");
+    assert!(metamers <= 0.65, "{stated}");
     // The pairs that matter: the reference, first, against each metamer.
-    let row = message["metamers"]["rows"][0].as_array().unwrap();
+    let row = stated["metamers"]["rows"][0].as_array().unwrap();
     let expected = row[1..].iter().map(|cell| cell.as_f64().unwrap()).sum::<f64>() / 4.0;
     assert!(
-        (number(&message["metamers"], "reference") - expected).abs() < 1e-12 && expected <= 0.7,
-        "{message}"
+        (number(&stated["metamers"], "reference") - expected).abs() < 1e-12 && expected <= 0.7,
+        "{stated}"
     );
     for table in ["originals", "single_pass", "metamers"] {
-        let same = number(&message[table], "same");
+        let same = number(&stated[table], "same");
         assert!((same - 0.5).abs() <= 0.09, "{table}: a surface against itself {same}");
-        let rows = message[table]["rows"].as_array().unwrap();
+        let rows = stated[table]["rows"].as_array().unwrap();
         assert!(rows.len() == 5 && rows.iter().all(|row| row.as_array().unwrap().len() == 5));
     }
 }
@@ -324,10 +324,10 @@ fn a_photograph_is_a_rendered_stroke_in_two_commands() {
         let (status, out, err) =
             message(&asperity(scene.folder.path(), &["render", &file, "-o", "take", "--json"]));
         assert_eq!((status, err.as_str()), (0, ""));
-        let message: Value = serde_json::from_str(&out).unwrap();
-        assert_eq!((number(&message, "quarantined"), number(&message, "dropped")), (0.0, 0.0));
-        assert!(number(&message, "audio_peak") > 0.0 && number(&message, "duration_s") > 1.9);
-        peaks.push(message["haptic_peak"][0].as_f64().unwrap());
+        let stated: Value = serde_json::from_str(&out).unwrap();
+        assert_eq!((number(&stated, "quarantined"), number(&stated, "dropped")), (0.0, 0.0));
+        assert!(number(&stated, "audio_peak") > 0.0 && number(&stated, "duration_s") > 1.9);
+        peaks.push(stated["haptic_peak"][0].as_f64().unwrap());
     }
     assert!(peaks[0] < peaks[1] && peaks[1] < peaks[2] && peaks[0] == peaks[3], "{peaks:?}");
 }

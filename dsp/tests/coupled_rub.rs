@@ -301,11 +301,11 @@ fn a_banks_forecast_is_what_its_modes_sound_like() {
             let struck: Vec<f32> = (0..3 * CELL).map(|_| rng.normal() as f32).collect();
             sound.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);
             other.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);
-            let (mut message, mut found) = ([0.0; CELL], [0.0; CELL]);
-            sound.ahead(&ahead, &mut message);
+            let (mut predicted, mut found) = ([0.0; CELL], [0.0; CELL]);
+            sound.ahead(&ahead, &mut predicted);
             other.render(3 * CELL as u64, Inputs::One(&[0.0; CELL]), &mut found);
             let most = found.iter().fold(0.0_f32, |most, y| most.max(y.abs()));
-            let worst = message.iter().zip(&found).fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
+            let worst = predicted.iter().zip(&found).fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
             println!(
                 "{} {count} modes at {rate_hz} Hz: {:.1e} of the peak apart",
                 level.isa().name(),

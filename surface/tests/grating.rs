@@ -117,8 +117,8 @@ fn new_noises_are_their_definition_along_any_path() {
         assert_eq!(bits(&heights), bits(&stroke.heights(&mut source, &[1, 30, 7])));
         for (n, height) in heights.iter().enumerate() {
             let place = asperity_surface::solid_noise::SolidCut::SLANTED.at(stroke.position_m(n));
-            let message = parameters.amplitude_m * source.definition(&parameters, place);
-            assert!((height - message).abs() < 1e-9, "{material:?}: {height} {message}");
+            let expected = parameters.amplitude_m * source.definition(&parameters, place);
+            assert!((height - expected).abs() < 1e-9, "{material:?}: {height} {expected}");
         }
         // Five cells a reading: nothing but the mean is left, and no step.
         let fast = Stroke::new([0.0; 2], [450.0, 0.0], RATE, 50).heights(&mut source, &[64]);

@@ -18,14 +18,14 @@ fn sand_drags_with_its_law_from_touch_on_and_with_nothing_before() {
         let sample = ContactSample::new([(0.05 + 0.08 * t) / SIDE_M, 0.5], 3.005).sliding([0.08, 0.0]);
         sample.landing(if t == 0.0 { 0.05 } else { 0.0 })
     });
-    for row in &felt.message {
+    for row in &felt.received {
         let [x, y, z] = row.force_n;
         // Eq. 3 in every row, the landing's as well; a row spans 4 ticks either way.
         assert!((x + 20.0 * 0.08 * z).abs() <= 0.01 * x.abs() + 0.02 && y.abs() < 1e-9, "{row:?}");
         assert!((x * x + y * y + z * z).sqrt() <= 20.0 + 1e-9);
     }
-    let [x, _, z] = felt.message[0].force_n;
-    println!("first row: {x:.4} N along, {z:.4} N out; last: {:?}", felt.message.last().unwrap().force_n);
+    let [x, _, z] = felt.received[0].force_n;
+    println!("first row: {x:.4} N along, {z:.4} N out; last: {:?}", felt.received.last().unwrap().force_n);
 }
 
 #[test]
@@ -41,9 +41,9 @@ fn depth_in_gives_the_documents_force_out() {
                 ContactSample::at_depth(uv, depth_m).sliding(velocity)
             });
             let wanted = law.answer_n(depth_m, velocity);
-            assert!(felt.message.len() > 590);
+            assert!(felt.received.len() > 590);
             let mut worst = [0.0f64; 3];
-            for row in felt.message.iter().filter(|row| row.tick > 60) {
+            for row in felt.received.iter().filter(|row| row.tick > 60) {
                 for a in 0..3 {
                     worst[a] = worst[a].max((row.force_n[a] - wanted[a]).abs());
                 }
@@ -61,7 +61,7 @@ fn a_tip_above_the_sand_feels_nothing_until_it_dips() {
     let depth_m = |t: f64| if t < 0.3 { -0.002 + 0.02 * t } else { 0.004 - 0.02 * (t - 0.3) };
     let felt = stroke.run(sand(SandLaw::default()), |t| ContactSample::at_depth([0.5, 0.5], depth_m(t)));
     let law = SandLaw::default();
-    for row in &felt.message {
+    for row in &felt.received {
         let t = row.tick as f64 / 1000.0;
         // A report holds for a millisecond.
         let (low, high) = (law.force_n(depth_m(t) - 1e-4), law.force_n(depth_m(t) + 1e-4));
@@ -69,7 +69,7 @@ fn a_tip_above_the_sand_feels_nothing_until_it_dips() {
         assert!(z >= low - 0.03 && z <= high + 0.03, "{t} s: {z} N, between {low} and {high}");
         assert!(row.force_n[0].hypot(row.force_n[1]) <= 0.01 * z.abs() + 1e-12, "{row:?}");
     }
-    let most = felt.message.iter().fold(0.0f64, |most, row| most.max(row.force_n[2]));
+    let most = felt.received.iter().fold(0.0f64, |most, row| most.max(row.force_n[2]));
     assert!((most / law.force_n(0.004) - 1.0).abs() < 0.03, "{most} N");
 }
 
@@ -107,7 +107,7 @@ fn steep_landings_keep_to_the_cap_and_0_n_in_air() {
         });
         let report_s = |t: f64| (t * reports_hz).floor() / reports_hz;
         let mut above_s = f64::NEG_INFINITY;
-        for row in &felt.message {
+        for row in &felt.received {
             let size_n = row.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
             assert!(size_n <= cap_n * (1.0 + 1e-12), "game {game}, tick {}: {size_n} of {cap_n} N", row.tick);
             most_n = most_n.max(size_n / cap_n);
@@ -240,7 +240,7 @@ fn a_soft_map_is_a_spring_and_a_hard_one_refuses_depth() {
             ContactSample::at_depth([0.2 + 0.1 * t, 0.3], depth_m)
         });
         let wanted = depth_m / compliance_m_n;
-        let off = felt.message.iter().skip(40).map(|row| (row.force_n[2] / wanted - 1.0).abs());
+        let off = felt.received.iter().skip(40).map(|row| (row.force_n[2] / wanted - 1.0).abs());
         let off = off.fold(0.0f64, f64::max);
         println!("{compliance_m_n} m/N, {depth_m} m: {wanted} N, {:.3} % off", 1e2 * off);
         assert!(off < 0.01);
@@ -274,7 +274,7 @@ fn a_place_below_the_frame_is_a_depth() {
     let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.2 };
     // The normal is u × v, the body's x: 2 mm below is 2 mm before the plane.
     let felt = stroke.run(surface(), |t| ContactSample::tip_at([0.098, 0.25 + 0.05 * t, 0.35]));
-    let last = felt.message[felt.message.len() - 10].force_n;
+    let last = felt.received[felt.received.len() - 10].force_n;
     assert!((last[2] - 2.0).abs() < 0.02, "{last:?}");
     let at = felt.path.last().unwrap().0;
     assert!((at[1] - 0.05).abs() < 1e-9 && at[0] > 0.055, "{at:?}");

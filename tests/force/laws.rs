@@ -44,7 +44,7 @@ fn the_force_of_seven_materials_is_the_law_within_one_percent() {
             });
             let first = felt.first.unwrap() as f64;
             let (mut error, mut power, mut count) = (0.0, 0.0, 0);
-            for row in &felt.message {
+            for row in &felt.received {
                 let at = row.tick as f64 / 5000.0 * sample_rate_hz - first;
                 let index = at.floor() as usize;
                 if !(0.1..0.35).contains(&(row.tick as f64 / 5000.0)) || index + 1 >= felt.path.len() {
@@ -76,7 +76,7 @@ fn a_thousand_rows_a_second_feel_sandpaper_at_15_cm_s() {
             let landing = if t == 0.0 && force_n == 0.0 { 1e-3 } else { 0.0 };
             sample.sliding([speed_m_s, 0.0]).landing(landing)
         });
-        let x: Vec<f64> = felt.message.iter().map(|row| row.force_n[0]).collect();
+        let x: Vec<f64> = felt.received.iter().map(|row| row.force_n[0]).collect();
         (x.iter().map(|x| x * x).sum::<f64>() / x.len().max(1) as f64).sqrt()
     };
     let [slow, fast] = [0.05, 0.15].map(|speed| rms(speed, 0.5));
@@ -92,7 +92,7 @@ fn every_row_tells_another_force_at_every_rate() {
     let felt = stroke.run(block_of(SolidMaterial::Gravel), |t| {
         ContactSample::new([(0.03 + 0.1 * t) / SIDE_M, 0.4], 0.5).sliding([0.1, 0.0])
     });
-    let moving = &felt.message[200..];
+    let moving = &felt.received[200..];
     assert!(moving.len() > 1000 && moving.windows(2).all(|pair| pair[0].force_n[0] != pair[1].force_n[0]));
 }
 

@@ -32,12 +32,12 @@ fn slow_fast_and_double_force_readers_count_their_losses() {
         }
     }
     in_a_hurry.extend(std::iter::from_fn(|| hurried.read()));
-    let message: Vec<ForceRow> = std::iter::from_fn(|| all.read()).collect();
+    let received: Vec<ForceRow> = std::iter::from_fn(|| all.read()).collect();
     assert_eq!((all.lost(), hurried.lost()), (0, 0));
-    assert!(message == in_a_hurry && message.len() > 3900, "{} and {}", message.len(), in_a_hurry.len());
+    assert!(received == in_a_hurry && received.len() > 3900, "{} and {}", received.len(), in_a_hurry.len());
     let late: Vec<ForceRow> = std::iter::from_fn(|| stalled.read()).collect();
-    assert_eq!(late.len() as u64 + stalled.lost(), message.len() as u64);
-    assert!(stalled.lost() > 2000 && late[..] == message[message.len() - late.len()..]);
+    assert_eq!(late.len() as u64 + stalled.lost(), received.len() as u64);
+    assert!(stalled.lost() > 2000 && late[..] == received[received.len() - late.len()..]);
 }
 
 /// Between two landings of one contact, 10 N and then 1 N, the first of which still fades: what a
@@ -65,12 +65,12 @@ fn a_contact_that_lifts_and_lands_elsewhere_is_felt_there() {
     while renderer.position() < 30_000 {
         renderer.render_tapped(&mut [&mut haptic], &mut [&mut audio], &mut felt);
     }
-    let Felt { rows, message, .. } = &mut felt;
-    rows.close(u64::MAX, |row| message.push(row));
+    let Felt { rows, received, .. } = &mut felt;
+    rows.close(u64::MAX, |row| received.push(row));
     let normal_n = |row: &ForceRow| row.force_n[2];
     for of in [Of::Contact(ContactId(1)), Of::Hand(ChannelId(0))] {
         let at = |tick: u64| {
-            let mut rows = message.iter().filter(|row| row.of == of && row.tick == tick);
+            let mut rows = received.iter().filter(|row| row.of == of && row.tick == tick);
             let row = rows.next().map(normal_n).unwrap();
             assert!(rows.next().is_none(), "tick {tick} is told twice");
             row

@@ -13,7 +13,7 @@ pub const SIDE_M: f64 = 0.2;
 /// Rows at a device's rate, and the path that the contact took.
 pub struct Felt {
     pub rows: ForceRows,
-    pub message: Vec<ForceRow>,
+    pub received: Vec<ForceRow>,
     pub path: Vec<([f64; 2], [f64; 2], f64)>,
     pub first: Option<u64>,
 }
@@ -21,14 +21,14 @@ pub struct Felt {
 impl Felt {
     pub fn new(rate_hz: f64, sample_rate_hz: f64) -> Self {
         let rows = ForceRows::new(rate_hz, sample_rate_hz, 4);
-        Self { rows, message: Vec::new(), path: Vec::new(), first: None }
+        Self { rows, received: Vec::new(), path: Vec::new(), first: None }
     }
 }
 
 impl Tap for Felt {
     fn contact(&mut self, block: &ContactBlock<'_>) {
         self.first.get_or_insert(block.first_sample);
-        self.rows.close(block.first_sample, |row| self.message.push(row));
+        self.rows.close(block.first_sample, |row| self.received.push(row));
         self.rows.add(block);
         let rows = block.position_m.iter().zip(block.velocity_m_s).zip(block.contact_samples);
         self.path.extend(rows.map(|((p, v), row)| (*p, *v, row.height_m)));
@@ -65,9 +65,9 @@ impl Stroke {
                 renderer.render_tapped(&mut [&mut haptic[..n]], &mut [&mut audio[..n]], &mut felt);
             }
         }
-        let Felt { rows, message, .. } = &mut felt;
-        rows.close(u64::MAX, |row| message.push(row));
-        message.retain(|row| matches!(row.of, Of::Contact(_)));
+        let Felt { rows, received, .. } = &mut felt;
+        rows.close(u64::MAX, |row| received.push(row));
+        received.retain(|row| matches!(row.of, Of::Contact(_)));
         felt
     }
 }

@@ -136,9 +136,9 @@ fn other_pieces_of_a_material_and_its_metamers_rank_before_other_materials() {
     for (material, maps) in pieces.iter().enumerate() {
         let look = &pieces[(material + 1) % pieces.len()][0];
         let made = metamer(look, &maps[0], &MetamerOptions::default(), |_| ()).unwrap().image;
-        let message = told_apart(&made, &maps[0]);
-        println!("metamer of material {material}: told apart {message:.2}");
-        if message <= 0.65 {
+        let share = told_apart(&made, &maps[0]);
+        println!("metamer of material {material}: told apart {share:.2}");
+        if share <= 0.65 {
             all.push((material, impression(&made)));
         }
     }

@@ -77,8 +77,8 @@ fn the_engine_is_no_louder_than_the_recording() {
         let played = render_fast(&modes, rate, 4410);
         for (n, played) in played.iter().enumerate().skip(1) {
             let at = fit.onset_sample + n;
-            let message = recording.samples[at] - fit.residual.samples[at];
-            assert!((message - played).abs() < 0.01, "{name}: {n} {message} {played}");
+            let stated = recording.samples[at] - fit.residual.samples[at];
+            assert!((stated - played).abs() < 0.01, "{name}: {n} {stated} {played}");
         }
         let longest_s = fit.modes.iter().map(|m| m.mode().t60_s()).fold(0.0, f64::max);
         assert!(longest_s <= 20.01 * (fit.end_s - fit.onset_s), "{name}: {longest_s} s");

@@ -78,19 +78,19 @@ fn pictures_without_a_pattern_have_no_lattice() {
 /// Ripples and wrinkles: seeds and lengths that nothing was tuned on.
 #[test]
 fn waves_of_every_direction_and_nearly_one_length_have_no_lattice() {
-    let (mut message, mut all) = (0, 0);
+    let (mut reported, mut all) = (0, 0);
     for (length, share) in [(6.5, 0.03), (11.0, 0.02), (11.0, 0.15), (20.0, 0.03), (20.0, 0.1), (25.0, 0.06)]
     {
         for seed in 500..512 {
             let picture = patterns::ring_of_waves(256, length, share, seed);
             let found = find_lattice(&picture);
             println!("{length} ±{share} {seed}: {found:?}");
-            message += usize::from(found.is_some_and(|lattice| lattice.confidence > 0.5));
+            reported += usize::from(found.is_some_and(|lattice| lattice.confidence > 0.5));
             all += 1;
         }
     }
-    println!("{message} of {all} told as lattices");
-    assert!(100 * message <= 3 * all, "{message} of {all} told as lattices");
+    println!("{reported} of {all} told as lattices");
+    assert!(100 * reported <= 3 * all, "{reported} of {all} told as lattices");
 }
 
 #[test]

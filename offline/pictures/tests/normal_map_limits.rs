@@ -40,25 +40,25 @@ fn one_wave_is_the_same_map_whichever_derivative_made_it() {
         let limit = |low: Derivative| (1.0 - gain(low)) / (1.0 + gain(low));
         let error = |made: &NormalMapHeights, by| relative_error(&made.height_px, &surface(by));
         for derivative in [Derivative::Exact, Derivative::Central] {
-            let (untold, message) = (error(&found, derivative), error(&made(Some(derivative)), derivative));
+            let (untold, stated) = (error(&found, derivative), error(&made(Some(derivative)), derivative));
             let limit = limit(Derivative::Central);
             println!(
-                "{wavelength_px} texels, {derivative:?}: {untold:.5}, told {message:.5}; not knowing costs {limit:.5}"
+                "{wavelength_px} texels, {derivative:?}: {untold:.5}, told {stated:.5}; not knowing costs {limit:.5}"
             );
             assert!(
-                untold <= (1.0 + limit) * (1.0 + message) - 1.0,
+                untold <= (1.0 + limit) * (1.0 + stated) - 1.0,
                 "{wavelength_px} {derivative:?}: {untold}"
             );
         }
         // Sobel lies outside of the two: a map is sooner taken for a baked one or one of plain
         // differences.
-        let (untold, message) =
+        let (untold, stated) =
             (error(&found, Derivative::Sobel), error(&made(Some(Derivative::Sobel)), Derivative::Sobel));
         let limit = limit(Derivative::Sobel);
         println!(
-            "{wavelength_px} texels, Sobel: {untold:.5}, told {message:.5}; not knowing costs {limit:.5} in the worst of three"
+            "{wavelength_px} texels, Sobel: {untold:.5}, told {stated:.5}; not knowing costs {limit:.5} in the worst of three"
         );
-        assert!(untold < 1.0 - gain(Derivative::Sobel) + message, "{wavelength_px}: {untold}");
+        assert!(untold < 1.0 - gain(Derivative::Sobel) + stated, "{wavelength_px}: {untold}");
     }
 }
 

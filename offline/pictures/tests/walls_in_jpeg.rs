@@ -63,6 +63,6 @@ fn relief_in_a_jpeg_is_what_it_is_without_its_divisor() {
     let mut rng = Rng::new(9);
     let coarse = Raster::from_fn(40, 40, |_, _| 12.0 * rng.normal());
     let stones = photographed(80, 1.0, |x, y| coarse.at(x as usize / 8, y as usize / 8));
-    let (message, untold) = (felt_m(&stones, stones.jpeg_divisor), felt_m(&stones, 0.0));
-    assert!(message > 0.98 * untold && message > 1e-5, "{message:.2e} {untold:.2e}");
+    let (corrected, untold) = (felt_m(&stones, stones.jpeg_divisor), felt_m(&stones, 0.0));
+    assert!(corrected > 0.98 * untold && corrected > 1e-5, "{corrected:.2e} {untold:.2e}");
 }

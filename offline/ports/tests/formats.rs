@@ -238,10 +238,10 @@ fn a_slow_fade_is_as_strong_in_an_ahap_halfway() {
         let file = ahap::write(&clip, None).unwrap().main;
         let mut back = ahap::parse(&file).unwrap().clip;
         for time_s in (1..100).map(|i| f64::from(i) / 100.0) {
-            let (remarks, is) = (a + time_s * (b - a), played(&file, time_s));
-            let off_db = 20.0 * (is / remarks).log10();
+            let (expected, is) = (a + time_s * (b - a), played(&file, time_s));
+            let off_db = 20.0 * (is / expected).log10();
             assert!(
-                is == remarks || off_db.abs() < 0.3 || (is - remarks).abs() < 0.001,
+                is == expected || off_db.abs() < 0.3 || (is - expected).abs() < 0.001,
                 "{a} {b} {time_s}: {is}"
             );
         }

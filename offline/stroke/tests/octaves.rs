@@ -68,7 +68,7 @@ fn a_probe_constant_off_by_a_fifth_stays_within_the_stated_error() {
         for ((now, _), (before, _)) in own.iter().zip(&right) {
             assert!((now - before).abs() <= 1.8, "constant {constant}: {now} dB instead of {before}");
         }
-        let message = found.probe_se_db.iter().copied().fold(0.0, f64::max);
-        assert!(message > 0.3, "the told error has nothing of the probe: {message} dB");
+        let stated_db = found.probe_se_db.iter().copied().fold(0.0, f64::max);
+        assert!(stated_db > 0.3, "the told error has nothing of the probe: {stated_db} dB");
     }
 }

@@ -54,8 +54,8 @@ fn pressed(compliance_m_n: f64, seed: u64) -> Result<StrokeSurface, asperity_str
 fn ground_that_sinks_under_a_changing_force_tells_its_compliance() {
     for (seed, compliance_m_n) in [(1, 3e-5), (2, 1e-4), (3, 1e-3)] {
         let found = pressed(compliance_m_n, seed).unwrap();
-        let message = found.compliance.unwrap_or_else(|| panic!("{compliance_m_n}: {:?}", found.warnings));
-        assert!((message.m_n / compliance_m_n - 1.0).abs() < 0.1, "{message:?} for {compliance_m_n}");
+        let estimate = found.compliance.unwrap_or_else(|| panic!("{compliance_m_n}: {:?}", found.warnings));
+        assert!((estimate.m_n / compliance_m_n - 1.0).abs() < 0.1, "{estimate:?} for {compliance_m_n}");
     }
     let hard = pressed(0.0, 4).unwrap();
     assert!(hard.compliance.is_none(), "{:?}", hard.compliance);

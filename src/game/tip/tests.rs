@@ -102,14 +102,14 @@ fn a_resting_hand_presses_with_stiffness_times_depth_within_bounds() {
                 tip.step(1.0 / rate_hz, at).unwrap()
             })
             .collect();
-        let message = samples(&steps);
+        let reported = samples(&steps);
         let wanted = (200.0 * depth_m).min(5.0);
-        assert!(message.iter().all(|sample| sample.normal_force_n <= 5.0));
-        let late = &message[message.len() - 100..];
+        assert!(reported.iter().all(|sample| sample.normal_force_n <= 5.0));
+        let late = &reported[reported.len() - 100..];
         let mean = late.iter().map(|sample| sample.normal_force_n).sum::<f64>() / 100.0;
         assert!((mean / wanted - 1.0).abs() < 0.05, "{depth_m} m: {mean} N");
         // On its way it is lighter, never harder but for the tracker's noise.
-        assert!(message.iter().all(|sample| sample.normal_force_n <= wanted + 200.0 * 1e-3));
+        assert!(reported.iter().all(|sample| sample.normal_force_n <= wanted + 200.0 * 1e-3));
     }
 }
 
@@ -170,23 +170,23 @@ fn after_a_hitch_nothing_hits_harder_or_moves_faster_than_a_hand() {
         for (jump_m, tracker_stops) in [(0.0, false), (0.0, true), (0.15, false), (0.15, true)] {
             let mut tip = tip(&[table()]);
             run(&mut tip, 90.0, 1.0, |t| [0.05 + 0.1 * t, 0.1, (0.01 - 0.05 * t).max(-0.005)]);
-            let (mut t, mut message) = (1.0, Vec::new());
+            let (mut t, mut reported) = (1.0, Vec::new());
             // Either the game stands still, or the tracker does while the game goes on.
             if tracker_stops {
                 for _ in 0..(hitch_s * 90.0) as usize {
-                    message.push(tip.step(1.0 / 90.0, [0.15, 0.1, -0.005]).unwrap());
+                    reported.push(tip.step(1.0 / 90.0, [0.15, 0.1, -0.005]).unwrap());
                 }
                 t += hitch_s;
-                message.push(tip.step(1.0 / 90.0, [0.05 + 0.1 * t + jump_m, 0.1, -0.005]).unwrap());
+                reported.push(tip.step(1.0 / 90.0, [0.05 + 0.1 * t + jump_m, 0.1, -0.005]).unwrap());
             } else {
                 t += hitch_s;
-                message.push(tip.step(hitch_s, [0.05 + 0.1 * t + jump_m, 0.1, -0.005]).unwrap());
+                reported.push(tip.step(hitch_s, [0.05 + 0.1 * t + jump_m, 0.1, -0.005]).unwrap());
             }
             for n in 1..12 {
                 let x = 0.05 + 0.1 * (t + f64::from(n) / 90.0) + jump_m;
-                message.push(tip.step(1.0 / 90.0, [x.min(0.39), 0.1, -0.005]).unwrap());
+                reported.push(tip.step(1.0 / 90.0, [x.min(0.39), 0.1, -0.005]).unwrap());
             }
-            for sample in samples(&message) {
+            for sample in samples(&reported) {
                 assert!(sample.normal_force_n <= 1.5 * 1.0, "{sample:?}");
                 assert!(speed(&sample) <= 1.0, "{hitch_s} s, {jump_m} m: {sample:?}");
             }
