@@ -8,7 +8,7 @@ fn root() -> PathBuf {
 }
 
 /// Crates whose tests are one program.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "",
     "dsp",
     "surface",
@@ -17,6 +17,7 @@ const CRATES: [&str; 9] = [
     "offline/shape",
     "offline/ports",
     "offline/batch",
+    "offline/stroke",
     "cli",
 ];
 
@@ -56,6 +57,45 @@ fn every_link_between_the_documents_leads_to_a_file() {
             assert!(target.exists(), "{}: {link} is not there", document.display());
         }
     }
+}
+
+/// Whether a path of a document leads somewhere: from the top, from `src`, or with `src` behind the
+/// crate's folder, its ending left out or not.
+fn is_there(path: &str) -> bool {
+    let (first, rest) = path.split_once('/').unwrap_or((path, ""));
+    let in_crate = format!("{first}/src/{rest}");
+    [path, &format!("src/{path}"), &in_crate].iter().any(|path| {
+        let path = root().join(path.trim_end_matches('/'));
+        path.exists() || path.with_extension("rs").exists()
+    })
+}
+
+#[test]
+fn every_path_that_a_document_prints_is_there() {
+    let doors: Vec<String> = [root(), root().join("src")]
+        .iter()
+        .flat_map(|folder| fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap())
+        .filter(|entry| entry.path().is_dir() && entry.file_name() != "target")
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    let (mut seen, mut lost) = (0, Vec::new());
+    for document in documents() {
+        let text = fs::read_to_string(&document).unwrap();
+        for quoted in text.split('`').skip(1).step_by(2) {
+            let plain =
+                quoted.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-./".contains(c));
+            let begins = quoted.split('/').next().unwrap_or_default();
+            if plain && quoted.contains('/') && doors.iter().any(|door| door == begins) {
+                seen += 1;
+                if !is_there(quoted) {
+                    lost.push(format!("{}: {quoted}", document.display()));
+                }
+            }
+        }
+    }
+    assert!(seen > 100, "{seen}");
+    assert!(lost.is_empty(), "{lost:#?}");
 }
 
 /// First fenced block of a language, indented or not; its fence has to stand at the margin.

@@ -168,7 +168,7 @@ fn a_circle_through_a_name_that_is_handed_on_is_found() {
 }
 
 /// Crates that a crate of this folder may be built from.
-const BUILT_FROM: [(&str, &[&str]); 11] = [
+const BUILT_FROM: [(&str, &[&str]); 12] = [
     ("dsp", &[]),
     ("offline/fft", &[]),
     ("surface", &["dsp", "fft"]),
@@ -177,6 +177,7 @@ const BUILT_FROM: [(&str, &[&str]); 11] = [
     ("offline/fit", &["dsp", "fft"]),
     ("offline/shape", &["dsp", "engine"]),
     ("offline/ports", &["dsp", "fft"]),
+    ("offline/stroke", &["dsp", "fft"]),
     ("offline/plot", &["fft"]),
     ("offline/batch", &["dsp", "engine", "ports"]),
     ("offline/evidence", &["dsp", "fft", "surface", "pictures", "engine"]),

@@ -142,10 +142,18 @@ impl FractalNoise {
         self.level
     }
 
-    /// Exponent of the power spectrum for a perceptual roughness of 0–1 (Hasti §III-C).
+    /// Exponent of the power spectrum for a perceptual roughness of 0–1 (Hasti §III-C). The octaves
+    /// take its powers from the polynomials of `gains`, which `tests/independent/noise_spectrum.py`
+    /// prints.
     #[must_use]
     pub fn alpha(roughness: f64) -> f64 {
         2.5 - 1.5 * roughness.clamp(0.0, 1.0)
+    }
+
+    /// Roughness of 0–1 whose exponent is the nearest.
+    #[must_use]
+    pub fn roughness(alpha: f64) -> f64 {
+        ((2.5 - alpha) / 1.5).clamp(0.0, 1.0)
     }
 
     /// Adds the relief along a path to `height_m`. `roughness` (0–1, clamped) and `height_m` are as

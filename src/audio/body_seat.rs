@@ -24,7 +24,7 @@ pub(crate) struct BodySeat {
     /// The name of what is here; none where a body rings out.
     id: Option<BodyId>,
     bus: usize,
-    shares: [Task; SHARES],
+    shares: [Share; SHARES],
     /// It sounds on its own bus and no other, as loud as it is.
     alone: bool,
     /// Linear gain, and the way there.
@@ -44,7 +44,7 @@ const SHARES: usize = 2 * (MAX_SENDS + 1);
 
 /// A bus that a body sounds on: how loud, and the way there.
 #[derive(Clone, Copy)]
-struct Task {
+struct Share {
     bus: usize,
     gain: f64,
     smoothed: Smoothed,
@@ -52,7 +52,7 @@ struct Task {
 
 /// Time in which a body that is damped fades, s: 4096 samples at 44.1 kHz.
 const FADE_S: f64 = 4096.0 / 44_100.0;
-impl Task {
+impl Share {
     fn go_to(&mut self, gain: f64) {
         self.gain = gain;
     }
@@ -79,7 +79,7 @@ impl BodySeat {
             of: None,
             id: None,
             bus: 0,
-            shares: [Task { bus: 0, gain: 0.0, smoothed: Smoothed::settled(0.0, sample_rate_hz) }; SHARES],
+            shares: [Share { bus: 0, gain: 0.0, smoothed: Smoothed::settled(0.0, sample_rate_hz) }; SHARES],
             alone: false,
             gain: 1.0,
             smoothed: Smoothed::new(sample_rate_hz),
@@ -113,10 +113,10 @@ impl BodySeat {
         if self.id != Some(id) {
             (self.id, self.bus) = (Some(id), bus);
             self.shares.iter_mut().for_each(|share| share.go_to(0.0));
-            self.shares.iter_mut().for_each(Task::arrive);
+            self.shares.iter_mut().for_each(Share::arrive);
             self.send_to(bus, 1.0);
             sends.iter().flatten().for_each(|(bus, gain)| self.send_to(*bus, *gain));
-            self.shares.iter_mut().for_each(Task::arrive);
+            self.shares.iter_mut().for_each(Share::arrive);
             self.smoothed.set(gain);
         } else if self.bus != bus {
             self.play_on(bus);
@@ -141,7 +141,7 @@ impl BodySeat {
     /// Sounds so loud on a bus from now on, whatever it does on others.
     pub(crate) fn send_to(&mut self, bus: usize, gain: f64) {
         let place = self.shares.iter().position(|share| share.bus == bus && !share.is_over());
-        let place = place.or_else(|| self.shares.iter().position(Task::is_over));
+        let place = place.or_else(|| self.shares.iter().position(Share::is_over));
         // If a body goes from bus to bus many times within a fade, the oldest ends at once.
         let share = &mut self.shares[place.unwrap_or(0)];
         if share.bus != bus {
@@ -267,18 +267,18 @@ impl BodySeat {
     }
 
     /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes
-    /// were left out. `entry` is what the bank has sounded like and left out, where another thread
+    /// were left out. `rung` is what the bank has sounded like and left out, where another thread
     /// has rung it already.
     pub(crate) fn render(
         &mut self,
-        terms: RenderArgs,
-        entry: Option<(&[f32], usize)>,
+        args: RenderArgs,
+        rung: Option<(&[f32], usize)>,
         out: &mut [f32],
     ) -> usize {
         let Some(body) = &mut self.current else { return 0 };
-        let Some((sound, left_out)) = entry else { return body.render(terms, out) };
+        let Some((sound, left_out)) = rung else { return body.render(args, out) };
         out.iter_mut().zip(sound).for_each(|(sum, x)| *sum += x);
-        body.add_strikes(terms.position, out);
+        body.add_strikes(args.position, out);
         left_out
     }
 

@@ -50,12 +50,12 @@ pub(crate) struct Noise<'a> {
     pub(crate) tip_radius_m: f64,
     /// Its short waves by themselves, where they are wanted.
     pub(crate) between: Option<(BetweenQuery, &'a mut ShortWaves)>,
-    /// The heights once more, as a tip of its own rides them.
-    pub(crate) heard: Option<HeardNoise<'a>>,
+    /// The heights once more, as a tool's tip rides them.
+    pub(crate) tip: Option<TipNoise<'a>>,
 }
 
 /// Heights with the micro-noise as another sphere rides it.
-pub(crate) struct HeardNoise<'a> {
+pub(crate) struct TipNoise<'a> {
     pub(crate) tip_radius_m: f64,
     pub(crate) height_m: &'a mut [f64],
     pub(crate) between: Option<(BetweenQuery, &'a mut ShortWaves)>,
@@ -165,24 +165,24 @@ impl Seat {
         if self.previous.is_some() {
             // Two surfaces at once are known at samples only.
             noise.between = None;
-            noise.heard.iter_mut().for_each(|heard| heard.between = None);
+            noise.tip.iter_mut().for_each(|tip| tip.between = None);
         }
         let all = path.slopes || self.previous.is_some();
         let Some(current) = &mut self.current else { return };
         current.sample(path, all, noise, out, rough);
         let Some(previous) = &mut self.previous else { return };
         let mut old = SurfaceBlock::default();
-        let mut new_heard_m = [0.0; MAX_BLOCK];
-        if let Some(heard) = &noise.heard {
-            new_heard_m[..path.len()].copy_from_slice(heard.height_m);
+        let mut new_tip_m = [0.0; MAX_BLOCK];
+        if let Some(tip) = &noise.tip {
+            new_tip_m[..path.len()].copy_from_slice(tip.height_m);
         }
         previous.sample(path, all, noise, &mut old, rough);
         let weight_at = |i: usize| {
             let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
             smoothstep((age / self.change_samples).min(1.0))
         };
-        if let Some(heard) = &mut noise.heard {
-            for (i, (height_m, new_m)) in heard.height_m.iter_mut().zip(new_heard_m).enumerate() {
+        if let Some(tip) = &mut noise.tip {
+            for (i, (height_m, new_m)) in tip.height_m.iter_mut().zip(new_tip_m).enumerate() {
                 *height_m += weight_at(i) * (new_m - *height_m);
             }
         }
@@ -364,8 +364,8 @@ impl SurfaceSlot {
         if surface.compliance_m_n > 0.0 {
             out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
-        if let Some(heard) = &mut noise.heard {
-            heard.height_m.copy_from_slice(&out.height_m[..n]);
+        if let Some(tip) = &mut noise.tip {
+            tip.height_m.copy_from_slice(&out.height_m[..n]);
         }
         if surface.micro_relief_m > 0.0 {
             let bounds_m = noise.bounds_m;
@@ -386,7 +386,7 @@ impl SurfaceSlot {
                 overlay.add(noise.field, &query, roughness, height_m, room, between);
             };
             ride(noise.tip_radius_m, &mut out.height_m[..n], &mut noise.between);
-            if let Some(HeardNoise { tip_radius_m, height_m, between }) = &mut noise.heard {
+            if let Some(TipNoise { tip_radius_m, height_m, between }) = &mut noise.tip {
                 ride(*tip_radius_m, height_m, between);
             }
         }

@@ -1,8 +1,8 @@
 //! One contact: the signal path of the paper on one screen (Hasti, Fig. 2).
 //!
 //! ```text
-//! path → profile → pad ┬→ coupling → skin → felt ─────────────────┬→ fades → channel, body
-//!                (tip) └→ coupling, exciters, rolling → impulses ─┘
+//! path → profile, rolling → pad ┬→ coupling → skin → felt ─────────────────┬→ fades, level → channel, body
+//!                         (tip) └→ coupling, exciters, rolling → impulses ─┘
 //! ```
 //! [`Voice::render`] names the stages in their order; each is a file.
 
@@ -245,7 +245,7 @@ impl Voice {
         self.path.run(slot, &mut points[..stretch.n], &mut profile.at_m);
     }
 
-    /// Profile: the height under each point.
+    /// Profile: the height under each point, micro-relief included, as what rolls rides it.
     fn sample_profile(
         &mut self,
         stretch: Segment<'_>,
@@ -258,17 +258,17 @@ impl Voice {
         let slopes = is_watched || output.quantity() == Quantity::Tangential;
         let from_m = self.path.last.position_m;
         let between = self.between.on_the_way(from_m);
-        let heard = shared.probe(self.role.probe).tip.as_deref();
-        let heard = heard.map(|tip| (tip.tip_radius_m(), self.tip.between.on_the_way(from_m)));
-        let along = Along { between, heard, ..self.along(shared, position, seat, slopes) };
+        let tip = shared.probe(self.role.probe).tip.as_deref();
+        let tip = tip.map(|tip| (tip.tip_radius_m(), self.tip.between.on_the_way(from_m)));
+        let along = Along { between, tip, ..self.along(shared, position, seat, slopes) };
         profile.run(seat, along, &points[..n], &mut self.cells);
-        let heard_m = heard.map(|_| &mut profile.heard.height_m);
-        self.rolling.run((position, shared.slow_step), (&mut profile.surface, heard_m), n, slopes);
+        let tip_height_m = tip.map(|_| &mut profile.tip.height_m);
+        self.rolling.run((position, shared.slow_step), (&mut profile.surface, tip_height_m), n, slopes);
     }
 
-    /// Pad: heights and forces become rows; a tip of its own has rows of its own.
+    /// Pad: heights and forces become rows; the tip of a tool has rows of its own.
     fn run_pad(&mut self, Segment { shared, n, .. }: Segment<'_>, scratch: &mut Scratch) {
-        let Scratch { profile, quartic_correction, rows, heard, out, .. } = scratch;
+        let Scratch { profile, quartic_correction, rows, tip_rows, out, .. } = scratch;
         let probe = shared.probe(self.role.probe);
         let ground = self.between.ground(shared, &profile.short, n, quartic_correction);
         let (heights_m, rows) = (&profile.surface.height_m[..n], &mut rows[..n]);
@@ -278,8 +278,8 @@ impl Voice {
         }
         self.pad.settle(probe.waits, rows, &mut out.counts);
         if let Some(tip) = &probe.tip {
-            let (forces_n, heard) = (&profile.force_n[..n], &mut heard[..n]);
-            self.tip.run((shared, tip), &profile.heard, forces_n, quartic_correction, heard, &mut out.counts);
+            let (forces_n, rows) = (&profile.force_n[..n], &mut tip_rows[..n]);
+            self.tip.run((shared, tip), &profile.tip, forces_n, quartic_correction, rows, &mut out.counts);
         }
     }
 
@@ -287,37 +287,25 @@ impl Voice {
     fn couple(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Segment { shared, output, position, n } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, heard: tip_rows, profile, force_n_s, out, .. } = scratch;
+        let Scratch { points, rows, tip_rows, profile, force_n_s, out, .. } = scratch;
         let has_tip = self.has_tip(shared);
         // The force of a tip holds its collisions.
         let excitation = &slot.surface.excitation;
         let sounds = excitation.has(Exciter::Force) || has_tip && excitation.has(Exciter::Collisions);
-        let heard = (&slot.stroking.force_high_pass, if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 });
+        let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let dragged = output.quantity() == Quantity::Tangential;
-        let mut felt = &rows[..n];
+        let (mut felt, rows) = (&rows[..n], if has_tip { &tip_rows[..n] } else { &rows[..n] });
         if dragged {
-            let (rows, from_m) = self.drag.run(&points[..n], &profile.surface, felt);
+            let (skin, from_m) = self.drag.run(&points[..n], &profile.surface, felt);
             // A skin that has been dragged for long begins as if it had been there for ever.
             if let Some(from_m) = from_m {
                 self.ac.feel = ContactOutputState::begin(output, from_m, 0.0);
             }
-            felt = rows;
-        }
-        let pushed = output.quantity() == Quantity::Force;
-        if has_tip || pushed {
-            for (row, felt) in tip_rows.iter_mut().zip(felt) {
-                (row.pad_m, row.pad_velocity_m_s) = (felt.pad_m, felt.pad_velocity_m_s);
-                if !has_tip {
-                    row.contact_force_n = felt.contact_force_n;
-                }
-                if pushed {
-                    row.pad_m = felt.contact_force_n;
-                }
-            }
-            felt = &tip_rows[..n];
+            felt = skin;
         }
         let impulse_n_s = &mut force_n_s[FORCE_HISTORY..][..n];
-        self.ac.run(output, heard, felt, &mut out.haptic[..n], impulse_n_s);
+        let force_filter = (&slot.stroking.force_high_pass, step_s);
+        self.ac.run(output, force_filter, (felt, rows), &mut out.haptic[..n], impulse_n_s);
         if !dragged {
             self.skin.pass(position, shared.slow_step, &mut out.haptic[..n]);
         }
@@ -328,13 +316,13 @@ impl Voice {
     fn excite(&mut self, stretch: Segment<'_>, seat: &Seat, scratch: &mut Scratch) {
         let Segment { shared, position, n, .. } = stretch;
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, heard, force_n_s, out, .. } = scratch;
+        let Scratch { points, rows, tip_rows, force_n_s, out, .. } = scratch;
         let (points, rows) = (&points[..n], &rows[..n]);
         let (slow_step, sample_rate_hz) = (shared.slow_step, shared.sample_rate_hz);
         let (probe, reaction) = (shared.probe(self.role.probe), self.reaction);
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
-        let heard = if probe.tip.is_some() { &heard[..n] } else { rows };
-        self.exciters.run(&by, heard, force_n_s, out);
+        let sounding = if probe.tip.is_some() { &tip_rows[..n] } else { rows };
+        self.exciters.run(&by, sounding, force_n_s, out);
         self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(slot, points, rows, &mut out.rub);
         if out.rub.rubs {

@@ -74,7 +74,7 @@ pub(crate) struct RenderArgs {
     /// Number of the [`MODE_LEVELS`] that are left out because blocks run late.
     pub(crate) mode_level: usize,
     /// False where no bus is there to hear it: then only its pickups ring.
-    pub(crate) heard: bool,
+    pub(crate) has_buses: bool,
 }
 
 impl BodySlot {

@@ -18,7 +18,7 @@
 //! Places within a tile and their weights are those of the texture's `tiled`. It is no
 //! `HeightField` among the sources: it adds to the heights that the source below it gave, by that
 //! source's roughness and power at each sample, and is asked between samples too. As a source it
-//! would need both through the trait, which is five methods because no other source does.
+//! would need both through the trait, where no other source has a use for them.
 
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OCTAVES, OctaveWeights, Relief, growth,

@@ -7,6 +7,7 @@
 //! ```
 
 use crate::error::CliError;
+use asperity_dsp::fractal_noise::{FractalNoise, growth};
 use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_shape::gltf::Document;
 use asperity_surface::image_io::decode_photograph;
@@ -42,10 +43,10 @@ pub fn finish(document: &Document, surface: &Value, at: &str) -> Result<Finish, 
     let length_m = number("correlationLength", 5e-5, 0.0, 1.0)?;
     let slope = number("spectralSlope", -2.4, -10.0, 0.0)?;
     let shortest_m = number("shortWavelength", length_m / 16.0, 0.0, 1.0)?.min(length_m);
-    let roughness = ((2.5 + slope) / 1.5).clamp(0.0, 1.0);
-    let (alpha, outer_scale_m) = (2.5 - 1.5 * roughness, length_m.clamp(1e-5, 1.0));
+    let roughness = FractalNoise::roughness(-slope);
+    let (alpha, outer_scale_m) = (FractalNoise::alpha(roughness), length_m.clamp(1e-5, 1.0));
     let rms = |wave_m: f64| {
-        10f64.powf(0.75 * (roughness - 1.0))
+        growth(roughness)
             * (wave_m / 1e-3).powf(0.5 * (alpha - 1.0))
             * (1.0 + (wave_m / outer_scale_m).powi(2)).powf(-0.25 * alpha)
     };

@@ -1,8 +1,9 @@
-//! Gains of the octaves: polynomials of the roughness, and the fade with the footprint.
+//! Gains of the octaves: polynomials of the roughness for the powers of its exponent
+//! ([`alpha`](super::FractalNoise::alpha)), and the fade with the footprint.
 
 use crate::simd::Vector;
 
-/// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within
+/// r = 2^(−(α − 1)/2) = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within
 /// 1e-6.
 pub(super) const OCTAVE_RATIO: [f32; 5] =
     [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
@@ -70,6 +71,7 @@ pub(super) fn gains<const N: usize, V: Vector<N>>(v: V, roughness: V::Single) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fractal_noise::FractalNoise;
     use crate::simd::{BASE, Eight};
 
     #[test]
@@ -77,7 +79,7 @@ mod tests {
         for n in 0..=100 {
             let r = n as f32 / 100.0;
             let of = |c| f64::from(polynomial(Eight(BASE), Eight(BASE).splat(r), c)[0]);
-            let exact = libm::pow(2.0, -0.75 * (1.0 - f64::from(r)));
+            let exact = libm::pow(2.0, 0.5 - 0.5 * FractalNoise::alpha(f64::from(r)));
             assert!((of(&OCTAVE_RATIO) / exact - 1.0).abs() < 2e-6, "{r}");
             assert!((of(&INVERSE_OCTAVE_RATIO) * exact - 1.0).abs() < 2e-6, "{r}");
         }

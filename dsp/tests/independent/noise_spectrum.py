@@ -5,7 +5,7 @@ A gradient-noise octave with independent gradients of unit covariance has the 2-
 it is integrated over the direction across. Octaves add in power.
 
 Prints: variance and peak wavelength of one octave (dsp/src/gradient_noise_2d.rs); level, tail boost and
-ratio polynomials (dsp/src/fractal_noise.rs); third-octave levels expected at 0.1 m/s and 44.1 kHz
+ratio polynomials (dsp/src/fractal_noise/gains.rs); third-octave levels expected at 0.1 m/s and 44.1 kHz
 (dsp/tests/noise_figures.rs).      Run: python3 noise_spectrum.py   (numpy)
 """
 import numpy as np

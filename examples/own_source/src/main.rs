@@ -3,9 +3,9 @@
 //! ```text
 //! h(u, v) = a · cos(2πu/p) · cos(2πv/p)      p: pitch of the threads, a: half of their height
 //! ```
-//! [`Woven`] is all a source is: its properties and its heights along a path. [`Thread`] is its
-//! handle: the game thickens the threads while fingers stroke them. [`make`] is its key in scene
-//! files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
+//! [`Woven`] is all a source is: its properties and its heights along a path. [`ThreadHeight`] is
+//! the change that it takes: the game thickens the threads while fingers stroke them. [`make`] is
+//! its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
 //!
 //! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file,
 //! then one whose threads grow.
@@ -15,39 +15,27 @@ use asperity::files::scene_file::{OwnSource, SceneFile};
 use asperity::load::Overrides;
 use asperity::surface::fade::Fade;
 use asperity::surface::height_field::{
-    HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    HeightField, PathBlock, Properties, Setup, SurfaceBlock, WavelengthBand,
 };
 use asperity::{
     ActuatorSettings, ChannelId, Config, ContactEvent, ContactId, ContactSample, DesignError, Engine,
     Renderer, Scene, Surface, SurfaceId,
 };
+use std::any::Any;
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A woven cloth.
 struct Woven {
     pitch_m: f64,
-    /// Half of the threads' height, m, as the game sets it.
-    wanted_m: Arc<AtomicU64>,
-    /// The same as it is, over absolute samples: every finger feels the same at the same sample, in
-    /// blocks of any length.
+    /// Half of the threads' height, over absolute samples: every finger feels the same at the same
+    /// sample, in blocks of any length.
     amplitude_m: Fade<f64>,
-    /// The sample at which the game's height was read last.
-    read_at: Option<u64>,
 }
 
-/// Changes a [`Woven`] while it is touched.
-struct Thread(Arc<AtomicU64>);
-
-impl Thread {
-    /// Makes the threads so high, m.
-    fn set_height_m(&self, height_m: f64) {
-        self.0.store((0.5 * height_m).to_bits(), Ordering::Relaxed);
-    }
-}
+/// Change of a [`Woven`] while it is touched: height of its threads, m.
+struct ThreadHeight(f64);
 
 /// What a scene says of a cloth.
 #[derive(serde::Deserialize)]
@@ -58,21 +46,14 @@ struct Cloth {
 }
 
 impl Cloth {
-    fn weave(&self) -> (Woven, Thread) {
-        let wanted_m = Arc::new(AtomicU64::new((0.5 * self.height_m).to_bits()));
-        let woven = Woven {
-            pitch_m: self.pitch_m,
-            wanted_m: wanted_m.clone(),
-            amplitude_m: Fade::new(0.5 * self.height_m),
-            read_at: None,
-        };
-        (woven, Thread(wanted_m))
+    fn weave(&self) -> Woven {
+        Woven { pitch_m: self.pitch_m, amplitude_m: Fade::new(0.5 * self.height_m) }
     }
 }
 
 /// The scene key.
 fn make(own: &OwnSource, _size_m: [f64; 2]) -> Result<Box<dyn HeightField>, FileError> {
-    Ok(Box::new(own.read::<Cloth>()?.weave().0))
+    Ok(Box::new(own.read::<Cloth>()?.weave()))
 }
 
 impl HeightField for Woven {
@@ -83,7 +64,6 @@ impl HeightField for Woven {
     /// Samples are counted anew, at this rate.
     fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
         self.amplitude_m.prepare(setup.sample_rate_hz);
-        self.read_at = None;
         Ok(())
     }
 
@@ -98,17 +78,11 @@ impl HeightField for Woven {
         }
     }
 
-    /// Touches come at steps of the absolute sample grid, before that step is sampled. The first
-    /// one of a step reads the game's height, for all fingers.
-    fn touch(&mut self, touch: &Touch) -> Reaction {
-        if self.read_at != Some(touch.sample) {
-            self.read_at = Some(touch.sample);
-            let wanted_m = f64::from_bits(self.wanted_m.load(Ordering::Relaxed));
-            if wanted_m != self.amplitude_m.target() {
-                self.amplitude_m.set(wanted_m, touch.sample);
-            }
-        }
-        Reaction::default()
+    /// Heights fade to the new ones from that sample on. A change of another type is not for it.
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
+        let Some(ThreadHeight(height_m)) = change.downcast_ref() else { return false };
+        self.amplitude_m.set(0.5 * height_m, sample);
+        true
     }
 }
 
@@ -154,20 +128,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let from_file_m = stroke(&mut scene, &mut renderer, names.surfaces["cloth"], 0.0)?;
     println!("the cloth of the scene file is felt with {:.1} um rms", 1e6 * from_file_m);
     let stranger = Engine::from_scene(&file, &Overrides::default()).err().map(|error| error.to_string());
-    println!("who does not know it is told: {}", stranger.unwrap_or_default());
+    println!("a program that does not know it refuses: {}", stranger.unwrap_or_default());
 
-    // From code, with its handle.
-    let (cloth, thread) = Cloth { pitch_m: 1e-3, height_m: 2e-5 }.weave();
+    // From code, and changed while it is there.
+    let cloth = Cloth { pitch_m: 1e-3, height_m: 2e-5 }.weave();
     let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };
     let Engine { mut scene, mut renderer, .. } =
         Config { actuators: vec![si], ..Config::default() }.build()?;
     let cloth = scene.add_surface(Surface::new(cloth, 0.1, 0.1)?.micro_relief_m(0.0))?;
     let thin_m = stroke(&mut scene, &mut renderer, cloth, 0.0)?;
-    thread.set_height_m(4e-5);
+    scene.change_surface(cloth, ThreadHeight(4e-5))?;
     stroke(&mut scene, &mut renderer, cloth, 0.5)?;
     let thick_m = stroke(&mut scene, &mut renderer, cloth, 1.0)?;
     println!("thin threads {:.1} um rms, twice as high {:.1} um rms", 1e6 * thin_m, 1e6 * thick_m);
     assert!((thin_m / from_file_m - 1.0).abs() < 1e-6, "the scene file's cloth is another");
-    assert!((thick_m / thin_m - 2.0).abs() < 0.1, "the handle did not arrive");
+    assert!((thick_m / thin_m - 2.0).abs() < 0.1, "the change did not arrive");
     Ok(())
 }

@@ -17,6 +17,7 @@
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::signed_bin;
 use crate::waves::Waves;
+use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_surface::raster::Raster;
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -64,7 +65,7 @@ impl ReliefSpectrum {
     /// Roughness R, 0–1.
     #[must_use]
     pub fn roughness(&self) -> f64 {
-        roughness_of(self.exponent)
+        FractalNoise::roughness(self.exponent)
     }
 
     /// Dimension D of the surface, 2–3.
@@ -82,7 +83,7 @@ impl ReliefSpectrum {
         let integral =
             if steep.abs() < 1e-6 { (high / low).ln() } else { (high.powf(steep) - low.powf(steep)) / steep };
         let rms = (self.level.exp() * integral).sqrt();
-        let overlay = 2.5 - 1.5 * self.roughness();
+        let overlay = FractalNoise::alpha(self.roughness());
         rms * (MICRO_WAVELENGTH_M / (FINE_OCTAVE_PX * texel_m)).powf(0.5 * (overlay - 1.0))
     }
 
@@ -109,14 +110,10 @@ impl ReliefSpectrum {
         }
         for (coarse, fine) in map.values.iter_mut().zip(&fine.values) {
             let ratio = (*coarse / coarse_mean + FAINT) / (fine / fine_mean + FAINT);
-            *coarse = roughness_of(self.exponent + ratio.log2());
+            *coarse = FractalNoise::roughness(self.exponent + ratio.log2());
         }
         map
     }
-}
-
-fn roughness_of(exponent: f64) -> f64 {
-    ((2.5 - exponent) / 1.5).clamp(0.0, 1.0)
 }
 
 /// (ln f, ω², ln P) of bands of a third of an octave that have power.

@@ -44,7 +44,7 @@ impl PowerLaw {
     /// Roughness whose exponent is the nearest.
     #[must_use]
     pub fn roughness(&self) -> f64 {
-        ((2.5 - self.alpha) / 1.5).clamp(0.0, 1.0)
+        FractalNoise::roughness(self.alpha)
     }
 
     fn relief(&self, outer_scale_m: f64, tip_radius_m: f64) -> Relief {

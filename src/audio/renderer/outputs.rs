@@ -244,29 +244,29 @@ impl Renderer {
     }
 
     /// Way of rendering bodies from a sample on.
-    pub(super) fn body_terms(&self, position: u64) -> RenderArgs {
-        RenderArgs { position, mode_level: self.governor.mode_level(), heard: !self.buses.is_empty() }
+    pub(super) fn body_args(&self, position: u64) -> RenderArgs {
+        RenderArgs { position, mode_level: self.governor.mode_level(), has_buses: !self.buses.is_empty() }
     }
 
     /// Writes the sound of the bodies, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         self.buses.iter_mut().for_each(|bus| bus.begin(self.position, n));
-        let terms = self.body_terms(self.position);
-        if let Some(crew) = &mut self.crew {
-            crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
+        let args = self.body_args(self.position);
+        if let Some(pool) = &mut self.pool {
+            pool.ring_bodies(args, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
         }
         let mut shed = 0;
         for index in self.bodies_used.iter() {
-            let entry = self.crew.as_mut().and_then(|crew| crew.take_body(index));
+            let rung = self.pool.as_mut().and_then(|pool| pool.take_body(index));
             let body = &mut self.bodies[index];
-            if terms.heard && body.is_plain() {
-                shed += body.render(terms, entry, self.buses[body.bus()].slice(n));
+            if args.has_buses && body.is_plain() {
+                shed += body.render(args, rung, self.buses[body.bus()].slice(n));
             } else {
-                shed += render_moving(terms, entry, body, &mut self.buses, &mut self.mix.body[..n]);
+                shed += render_moving(args, rung, body, &mut self.buses, &mut self.mix.body[..n]);
             }
         }
-        if let Some(crew) = &mut self.crew {
-            crew.put_bodies_back();
+        if let Some(pool) = &mut self.pool {
+            pool.put_bodies_back();
         }
         self.groups_shed = shed;
         let inner = self.shared.inner_audio;
@@ -297,14 +297,14 @@ impl Renderer {
 #[cold]
 #[inline(never)]
 fn render_moving(
-    terms: RenderArgs,
-    entry: Option<(&[f32], usize)>,
+    args: RenderArgs,
+    rung: Option<(&[f32], usize)>,
     body: &mut BodySeat,
     buses: &mut [Bus],
     sound: &mut [f32],
 ) -> usize {
     sound.fill(0.0);
-    let shed = body.render(terms, entry, sound);
+    let shed = body.render(args, rung, sound);
     body.scale(sound);
     body.spread(sound, |bus, i, x| {
         if let Some(bus) = buses.get_mut(bus) {

@@ -60,7 +60,7 @@ struct SurfaceTask {
 /// A body that rings.
 struct BodyTask {
     index: usize,
-    terms: RenderArgs,
+    args: RenderArgs,
     n: usize,
     body: Option<Box<BodySlot>>,
     cost: usize,
@@ -103,7 +103,7 @@ impl BodyTask {
     fn run(&mut self) {
         let sound = &mut self.sound[..self.n];
         sound.fill(0.0);
-        self.left_out = self.body.as_mut().map_or(0, |body| body.ring(self.terms, sound));
+        self.left_out = self.body.as_mut().map_or(0, |body| body.ring(self.args, sound));
     }
 }
 
@@ -123,7 +123,7 @@ pub(super) struct RenderPool {
     /// True where bodies go out in this stretch as soon as nobody touches them any more.
     sends_bodies: bool,
     /// Bodies that were rung, in their order.
-    entry: Vec<Box<BodyTask>>,
+    rung: Vec<Box<BodyTask>>,
     next_rung: usize,
     /// The job of each surface that goes out, one more than its place among the jobs; 0 for none.
     job_of: Box<[usize]>,
@@ -158,7 +158,7 @@ impl RenderPool {
         let body_share = |_| {
             Box::new(BodyTask {
                 index: 0,
-                terms: RenderArgs { position: 0, mode_level: 0, heard: true },
+                args: RenderArgs { position: 0, mode_level: 0, has_buses: true },
                 n: 0,
                 body: None,
                 cost: 0,
@@ -177,7 +177,7 @@ impl RenderPool {
             rendered: (0..voices).map(|_| None).collect(),
             last_to_touch: vec![0; bodies].into(),
             sends_bodies: false,
-            entry: Vec::with_capacity(bodies),
+            rung: Vec::with_capacity(bodies),
             next_rung: 0,
             job_of: vec![0; surfaces].into(),
         })
@@ -255,7 +255,7 @@ impl RenderPool {
                     }
                     self.surfaces.push(surface);
                 }
-                Task::Body(body) => self.entry.push(body),
+                Task::Body(body) => self.rung.push(body),
             }
         }
         self.rendered[index].take()
@@ -270,15 +270,15 @@ impl RenderPool {
     /// the others go as they [are left](Self::leave_bodies).
     pub(super) fn send_bodies(
         &mut self,
-        terms: RenderArgs,
+        args: RenderArgs,
         n: usize,
         bodies: &mut [BodySeat],
         used: &IndexSet,
     ) {
-        self.sends_bodies = bodies_pay(terms, n, bodies, used);
+        self.sends_bodies = bodies_pay(args, n, bodies, used);
         for index in used.iter() {
             if self.sends_bodies && self.last_to_touch[index] == 0 {
-                self.send_body(index, terms, n, &mut bodies[index]);
+                self.send_body(index, args, n, &mut bodies[index]);
             }
         }
     }
@@ -288,26 +288,26 @@ impl RenderPool {
         &mut self,
         voice: usize,
         (touching, seat): (&Voice, &Seat),
-        (terms, n): (RenderArgs, usize),
+        (args, n): (RenderArgs, usize),
         bodies: &mut [BodySeat],
     ) {
         for body in touched(touching, seat) {
             if self.sends_bodies && self.last_to_touch[body] == voice + 1 {
                 // It may hold what it touches.
                 self.last_to_touch[body] = 0;
-                self.send_body(body, terms, n, &mut bodies[body]);
+                self.send_body(body, args, n, &mut bodies[body]);
                 self.pool.wake();
             }
         }
     }
 
-    fn send_body(&mut self, index: usize, terms: RenderArgs, n: usize, body: &mut BodySeat) {
-        let cost = body.modes_that_ring(terms.position);
+    fn send_body(&mut self, index: usize, args: RenderArgs, n: usize, body: &mut BodySeat) {
+        let cost = body.modes_that_ring(args.position);
         if cost == 0 {
             return;
         }
         let Some(mut share) = self.bodies.pop() else { return };
-        (share.index, share.terms, share.n, share.cost) = (index, terms, n, cost);
+        (share.index, share.args, share.n, share.cost) = (index, args, n, cost);
         share.body = body.lend();
         self.jobs.push(Task::Body(share));
         self.send_all();
@@ -317,27 +317,27 @@ impl RenderPool {
     /// [`take_body`](Self::take_body).
     pub(super) fn ring_bodies(
         &mut self,
-        terms: RenderArgs,
+        args: RenderArgs,
         n: usize,
         (bodies, used): (&mut [BodySeat], &IndexSet),
         scratch: &mut Box<Scratch>,
     ) {
         self.next_rung = 0;
-        if !std::mem::take(&mut self.sends_bodies) && bodies_pay(terms, n, bodies, used) {
+        if !std::mem::take(&mut self.sends_bodies) && bodies_pay(args, n, bodies, used) {
             for index in used.iter() {
-                self.send_body(index, terms, n, &mut bodies[index]);
+                self.send_body(index, args, n, &mut bodies[index]);
             }
             self.pool.wake();
         }
         while let Some(job) = self.pool.next(scratch) {
             if let Task::Body(share) = job {
-                self.entry.push(share);
+                self.rung.push(share);
             }
         }
-        for share in &mut self.entry {
+        for share in &mut self.rung {
             bodies[share.index].take_back(share.body.take());
         }
-        self.entry.sort_unstable_by_key(|share| share.index);
+        self.rung.sort_unstable_by_key(|share| share.index);
     }
 
     /// Sends the jobs out, the last of them first.
@@ -354,14 +354,14 @@ impl RenderPool {
     /// Sound of a body in this stretch but for the first samples of its strikes, and the number of
     /// groups that were not driven, if it was shared. Bodies are asked for in their order.
     pub(super) fn take_body(&mut self, index: usize) -> Option<(&[f32], usize)> {
-        let share = self.entry.get(self.next_rung).filter(|share| share.index == index)?;
+        let share = self.rung.get(self.next_rung).filter(|share| share.index == index)?;
         self.next_rung += 1;
         Some((&share.sound[..share.n], share.left_out))
     }
 
     /// Keeps the memory for the next bodies.
     pub(super) fn put_bodies_back(&mut self) {
-        self.bodies.append(&mut self.entry);
+        self.bodies.append(&mut self.rung);
     }
 }
 
@@ -372,21 +372,21 @@ fn touched(voice: &Voice, seat: &Seat) -> impl Iterator<Item = usize> + use<> {
 }
 
 /// Tests whether at least two bodies ring, and are work enough.
-fn bodies_pay(terms: RenderArgs, n: usize, bodies: &[BodySeat], used: &IndexSet) -> bool {
-    let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
+fn bodies_pay(args: RenderArgs, n: usize, bodies: &[BodySeat], used: &IndexSet) -> bool {
+    let costs = used.iter().map(|index| bodies[index].modes_that_ring(args.position));
     let (ringing, modes) =
         costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
     // While modes are left out a body sounds twice, by those that hear and those that do not:
     // its sums are made in its own order.
-    ringing >= 2 && modes * n >= LEAST_MODE_SAMPLES && terms.mode_level == 0
+    ringing >= 2 && modes * n >= LEAST_MODE_SAMPLES && args.mode_level == 0
 }
 
 /// Tests whether contacts lie on at least two surfaces, and are work enough.
 fn pays(at: SampleRange, voices: &[Box<Voice>], used: &IndexSet) -> bool {
-    let mut active_groups = used.iter().map(|index| &voices[index]).filter(|voice| voice.works());
-    let Some(first) = active_groups.next() else { return false };
+    let mut working = used.iter().map(|index| &voices[index]).filter(|voice| voice.works());
+    let Some(first) = working.next() else { return false };
     let (mut count, mut elsewhere) = (1, false);
-    for voice in active_groups {
+    for voice in working {
         count += 1;
         elsewhere |= voice.surface != first.surface;
     }

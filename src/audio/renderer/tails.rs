@@ -57,8 +57,8 @@ impl Renderer {
         let n = to_grid + MAX_BLOCK;
         let mut sound = [0.0; 2 * MAX_BLOCK];
         for (from, to) in [(0, to_grid), (to_grid, n)] {
-            let terms = self.body_terms(self.position + from as u64);
-            self.bodies[seat].render(terms, None, &mut sound[from..to]);
+            let args = self.body_args(self.position + from as u64);
+            self.bodies[seat].render(args, None, &mut sound[from..to]);
         }
         let body = &mut self.bodies[seat];
         body.scale(&mut sound[..n]);

@@ -67,25 +67,25 @@ impl Gathering<'_> {
         }
     }
 
-    /// Adds what a crew has rendered. By itself, as what follows: what one contact alone does not
+    /// Adds what a pool has rendered. By itself, as what follows: what one contact alone does not
     /// need costs it nothing.
     #[inline(never)]
     fn gather(
         &mut self,
-        crew: &mut RenderPool,
-        terms: RenderArgs,
+        pool: &mut RenderPool,
+        args: RenderArgs,
         (voices, used): (&mut [Box<Voice>], &IndexSet),
         seats: &mut [Seat],
         scratch: &mut Box<Scratch>,
     ) {
         let n = self.at.n;
         for index in used.iter() {
-            let Some(share) = crew.take_voice(index, voices, seats, scratch) else { continue };
+            let Some(share) = pool.take_voice(index, voices, seats, scratch) else { continue };
             let voice = &voices[index];
             let seat = &seats[voice.surface];
             self.add(index, voice, seat, share.pressing, &share.out);
-            crew.leave_bodies(index, (voice, seat), (terms, n), self.bodies);
-            crew.put_back(share);
+            pool.leave_bodies(index, (voice, seat), (args, n), self.bodies);
+            pool.put_back(share);
         }
     }
 
@@ -97,15 +97,15 @@ impl Gathering<'_> {
 
 impl Renderer {
     pub(super) fn render_contacts(&mut self, n: usize, tap: &mut dyn Tap) {
-        let terms = self.body_terms(self.position);
+        let args = self.body_args(self.position);
         let tap = &mut self.outlets.beside(tap);
         let at = SampleRange { position: self.position, n };
         let watched = tap.is_watching();
         // A tap is not shared: it is shown one contact after the other.
-        let crew = self.crew.as_mut().filter(|_| !watched).and_then(|crew| {
+        let pool = self.pool.as_mut().filter(|_| !watched).and_then(|pool| {
             let voices = (&mut self.voices[..], &self.voices_used);
-            let shared_out = crew.send_contacts(at, &self.shared, voices, &mut self.seats, &self.channels);
-            shared_out.then_some(crew)
+            let shared_out = pool.send_contacts(at, &self.shared, voices, &mut self.seats, &self.channels);
+            shared_out.then_some(pool)
         });
         let mut gathering = Gathering {
             at,
@@ -116,10 +116,10 @@ impl Renderer {
             crowded: 0,
         };
         let shared = &*self.shared;
-        if let Some(crew) = crew {
-            crew.send_bodies(terms, n, gathering.bodies, &self.bodies_used);
+        if let Some(pool) = pool {
+            pool.send_bodies(args, n, gathering.bodies, &self.bodies_used);
             let voices = (&mut self.voices[..], &self.voices_used);
-            gathering.gather(crew, terms, voices, &mut self.seats, &mut self.scratch);
+            gathering.gather(pool, args, voices, &mut self.seats, &mut self.scratch);
         } else {
             for index in self.voices_used.iter() {
                 let voice = &mut self.voices[index];

@@ -15,8 +15,8 @@ pub(crate) struct Scratch {
     pub(super) profile: Profile,
     pub(super) quartic_correction: [[QuarticCorrection; 2]; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
-    /// Rows of a tip of its own.
-    pub(super) heard: [PadSample; MAX_BLOCK],
+    /// Rows of a tool's tip.
+    pub(super) tip_rows: [PadSample; MAX_BLOCK],
     /// Impulses of the alternating force behind those of the stretch before, N·s.
     pub(super) force_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
     pub(super) shown: ContactRows,
@@ -52,7 +52,7 @@ impl Scratch {
             profile: Profile::new(),
             quartic_correction: [[[0.0; 4]; 2]; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
-            heard: [PadSample::default(); MAX_BLOCK],
+            tip_rows: [PadSample::default(); MAX_BLOCK],
             force_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
             shown: ContactRows::new(),
             out: Box::new(VoiceBlock::new()),
@@ -84,8 +84,8 @@ impl VoiceBlock {
     }
 
     /// Brings what is heard and what is felt of `n` samples to their levels.
-    pub(super) fn level(&mut self, n: usize, (heard, felt): (f64, f64)) {
+    pub(super) fn level(&mut self, n: usize, (sound, felt): (f64, f64)) {
         self.haptic[..n].iter_mut().for_each(|x| *x *= felt);
-        self.impulse_n_s[..n].iter_mut().for_each(|x| *x *= heard);
+        self.impulse_n_s[..n].iter_mut().for_each(|x| *x *= sound);
     }
 }

@@ -62,8 +62,8 @@ impl Voice {
         self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
-            let heard = probe.tip.as_ref().map(|tip| (tip.tip_radius_m(), None));
-            let along = Along { heard, ..self.along(shared, position, seat, false) };
+            let tip = probe.tip.as_ref().map(|tip| (tip.tip_radius_m(), None));
+            let along = Along { tip, ..self.along(shared, position, seat, false) };
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
             self.between.roughness = scratch.profile.surface.roughness[0];
@@ -74,7 +74,7 @@ impl Voice {
             let later = 1.0 + stamp.fraction();
             self.pad.land(height_m, force_n, sample.closing_m_s, later);
             if probe.tip.is_some() {
-                self.tip.land(scratch.profile.heard.height_m[0], force_n, sample.closing_m_s, later);
+                self.tip.land(scratch.profile.tip.height_m[0], force_n, sample.closing_m_s, later);
             }
             let begins = if at.output.quantity() == Quantity::Force { 0.0 } else { height_m };
             self.ac.feel = ContactOutputState::begin(at.output, begins, -sample.closing_m_s);

@@ -83,7 +83,7 @@ impl Voice {
         let tip_radius_m = probe.ride_radius_m(relief_m);
         let block = PathBlock { contact, first_sample, slopes, tip_radius_m, ..PathBlock::default() };
         let micro_radius_m = probe.tip_radius_m;
-        Along { shared, block, micro_radius_m, in_body: self.path.is_in_body(), between: None, heard: None }
+        Along { shared, block, micro_radius_m, in_body: self.path.is_in_body(), between: None, tip: None }
     }
 
     /// Tests whether its probe is heard by a tip of its own.
@@ -120,7 +120,7 @@ impl Voice {
             && self.path.is_still()
             && self.skin.is_still()
             && self.pad.is_settled(&row)
-            && (!self.has_tip(stretch.shared) || self.tip.is_settled(&scratch.heard[n - 1]))
+            && (!self.has_tip(stretch.shared) || self.tip.is_settled(&scratch.tip_rows[n - 1]))
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.wakes_contact
             && !scratch.out.rub.rubs

@@ -1,7 +1,7 @@
 //! Profile: heights along the path, with the micro-relief below the source's own band, as the
 //! probe's tip rides them.
 
-use crate::audio::seat::{HeardNoise, Noise, Seat};
+use crate::audio::seat::{Noise, Seat, TipNoise};
 use crate::audio::shared::Shared;
 use crate::resource::overlay::{BetweenQuery, Room, ShortWaves, TileCells};
 use asperity_dsp::pair::Pair;
@@ -16,8 +16,8 @@ pub(super) struct Along<'a> {
     pub(super) block: PathBlock<'a>,
     /// Radius with which the micro-relief is ridden, m.
     pub(super) micro_radius_m: f64,
-    /// Radius with which a tip of its own rides it, m, and what that samples between samples.
-    pub(super) heard: Option<(f64, Option<BetweenQuery>)>,
+    /// Radius with which a tool's tip rides it, m, and what that samples between samples.
+    pub(super) tip: Option<(f64, Option<BetweenQuery>)>,
     /// Places in the body are known, [`Profile::at_m`].
     pub(super) in_body: bool,
     /// Short waves between samples too.
@@ -37,15 +37,15 @@ pub(super) struct Profile {
     pub(super) surface: SurfaceBlock,
     /// Short waves of the micro-relief, at samples and between.
     pub(super) short: ShortWaves,
-    /// As a tip of its own rides it.
-    pub(super) heard: Heard,
+    /// As a tool's tip rides it.
+    pub(super) tip: TipProfile,
     /// Room for another map, and for what is read beside the path.
     pub(super) rough: SurfaceBlock,
     room: Room,
 }
 
-/// The surface as a tip of its own rides it.
-pub(super) struct Heard {
+/// The surface as a tool's tip rides it.
+pub(super) struct TipProfile {
     pub(super) height_m: [f64; MAX_BLOCK],
     pub(super) short: ShortWaves,
 }
@@ -61,7 +61,7 @@ impl Profile {
             force_n: [0.0; MAX_BLOCK],
             surface: SurfaceBlock::default(),
             short: ShortWaves::new(),
-            heard: Heard { height_m: [0.0; MAX_BLOCK], short: ShortWaves::new() },
+            tip: TipProfile { height_m: [0.0; MAX_BLOCK], short: ShortWaves::new() },
             rough: SurfaceBlock::default(),
             room: Room::new(),
         }
@@ -77,9 +77,9 @@ impl Profile {
     ) {
         let n = points.len();
         let mut bounds_m = self.lay_out(along.shared, points);
-        (self.short.known, self.heard.short.known) = (false, false);
-        let heard_between = along.heard.and_then(|(_, between)| between);
-        if let Some(BetweenQuery { from_m, .. }) = along.between.or(heard_between) {
+        (self.short.known, self.tip.short.known) = (false, false);
+        let tip_between = along.tip.and_then(|(_, between)| between);
+        if let Some(BetweenQuery { from_m, .. }) = along.between.or(tip_between) {
             // Looks lie between two places of the path, or the one before it.
             let [low_m, high_m] = bounds_m;
             bounds_m = [
@@ -104,10 +104,10 @@ impl Profile {
             room: &mut self.room,
             tip_radius_m: along.micro_radius_m,
             between: along.between.map(|way| (way, &mut self.short)),
-            heard: along.heard.map(|(tip_radius_m, between)| HeardNoise {
+            tip: along.tip.map(|(tip_radius_m, between)| TipNoise {
                 tip_radius_m,
-                height_m: &mut self.heard.height_m[..n],
-                between: between.map(|way| (way, &mut self.heard.short)),
+                height_m: &mut self.tip.height_m[..n],
+                between: between.map(|way| (way, &mut self.tip.short)),
             }),
         };
         seat.sample(&path, &mut noise, &mut self.surface, &mut self.rough);
@@ -116,10 +116,10 @@ impl Profile {
         }
         // A surface that gives way lies lower by as much as the force presses it in.
         let give = self.surface.compliance_m_n[..n].iter().zip(&self.force_n);
-        let heights = self.surface.height_m.iter_mut().zip(&mut self.heard.height_m);
-        for ((height_m, heard_m), (compliance_m_n, force_n)) in heights.zip(give) {
+        let heights = self.surface.height_m.iter_mut().zip(&mut self.tip.height_m);
+        for ((height_m, tip_height_m), (compliance_m_n, force_n)) in heights.zip(give) {
             let given_m = compliance_m_n * force_n;
-            (*height_m, *heard_m) = (*height_m - given_m, *heard_m - given_m);
+            (*height_m, *tip_height_m) = (*height_m - given_m, *tip_height_m - given_m);
         }
     }
 

@@ -71,13 +71,13 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground, and those that a tip of its own rides, become those of the ride, and
+    /// Heights of the ground, and those that a tool's tip rides, become those of the ride, and
     /// friction, where it is known, acts on what slips; `slow_step` samples lie between two steps
     /// of the grid.
     pub(super) fn run(
         &mut self,
         (position, slow_step): (u64, u64),
-        (surface, mut heard_m): (&mut SurfaceBlock, Option<&mut [f64; MAX_BLOCK]>),
+        (surface, mut tip_height_m): (&mut SurfaceBlock, Option<&mut [f64; MAX_BLOCK]>),
         n: usize,
         rubbed: bool,
     ) {
@@ -87,8 +87,8 @@ impl Rolling {
             self.ride = [RollingState::at(height_m.last().copied().unwrap_or_default()); 2];
             return;
         }
-        let heard_m = heard_m.iter_mut().flat_map(|heard_m| &mut heard_m[..n]);
-        for (height_m, share) in heard_m.zip(shares(self.share, position, slow_step)) {
+        let tip_height_m = tip_height_m.iter_mut().flat_map(|height_m| &mut height_m[..n]);
+        for (height_m, share) in tip_height_m.zip(shares(self.share, position, slow_step)) {
             let ride_m = self.ride[1].tick(&self.filter, *height_m);
             *height_m += share * (ride_m - *height_m);
         }

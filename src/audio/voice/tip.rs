@@ -1,4 +1,4 @@
-//! Tip: the contact of its own by which a tool is heard (`dsp::micro_contact::Tip`).
+//! Tip: a tool's second contact, by which it is heard (`dsp::micro_contact::Tip`).
 //!
 //! Heights as the tip's asperities ride them in, the contact force that the body gets out; the pad
 //! that is felt runs beside it, untouched. Its force holds the pulses of its strokes already, so no
@@ -8,7 +8,7 @@
 
 use super::between::Between;
 use super::pad::Pad;
-use super::profile::Heard;
+use super::profile::TipProfile;
 use super::{PadSample, PathPoint};
 use crate::audio::seat::Seat;
 use crate::audio::shared::Shared;
@@ -65,17 +65,17 @@ impl Tip {
     pub(super) fn run(
         &mut self,
         (shared, tip): (&Shared, &PreparedProbe),
-        heard: &Heard,
+        profile: &TipProfile,
         forces_n: &[f64],
         quartic_correction: &mut [[QuarticCorrection; 2]],
         rows: &mut [PadSample],
         counts: &mut Counts,
     ) {
-        let heights_m = &heard.height_m[..rows.len()];
+        let heights_m = &profile.height_m[..rows.len()];
         if std::mem::take(&mut self.appears) {
             self.pad.appear(heights_m[0], forces_n[0]);
         }
-        let ground = self.between.ground(shared, &heard.short, rows.len(), quartic_correction);
+        let ground = self.between.ground(shared, &profile.short, rows.len(), quartic_correction);
         self.pad.run(heights_m, forces_n, ground, rows);
         let mut own = Counts::default();
         self.pad.settle(tip.waits, rows, &mut own);

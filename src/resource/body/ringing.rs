@@ -10,9 +10,9 @@ use asperity_dsp::modal_bank::{self, Input, Inputs};
 impl BodySlot {
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck
     /// it.
-    pub(crate) fn render(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
-        let left_out = self.ring(terms, out);
-        self.add_strikes(terms.position, out);
+    pub(crate) fn render(&mut self, args: RenderArgs, out: &mut [f32]) -> usize {
+        let left_out = self.ring(args, out);
+        self.add_strikes(args.position, out);
         left_out
     }
 
@@ -30,21 +30,21 @@ impl BodySlot {
 
     /// [`render`](Self::render) without the first samples of strikes
     /// ([`add_strikes`](Self::add_strikes)): nearly all of the work.
-    pub(crate) fn ring(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
-        if self.is_silent(terms.position) {
+    pub(crate) fn ring(&mut self, args: RenderArgs, out: &mut [f32]) -> usize {
+        if self.is_silent(args.position) {
             if let Some(pickups) = &mut self.pickups {
                 pickups.rest();
             }
-            self.end_stretch(terms.position, out.len());
+            self.end_stretch(args.position, out.len());
             return 0;
         }
         let left_out = if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
-            self.ring_inputs::<FEW_INPUTS>(terms, out)
+            self.ring_inputs::<FEW_INPUTS>(args, out)
         } else {
-            self.ring_inputs::<MOST_INPUTS>(terms, out)
+            self.ring_inputs::<MOST_INPUTS>(args, out)
         };
         if let Some(diffuse) = &mut self.diffuse {
-            diffuse.render(terms.position, out);
+            diffuse.render(args.position, out);
         }
         left_out
     }
@@ -57,21 +57,21 @@ impl BodySlot {
     }
 
     /// Adds what the bank answers to at most `MOST` inputs; how many groups of modes heard nothing.
-    fn ring_inputs<const MOST: usize>(&mut self, terms: RenderArgs, out: &mut [f32]) -> usize {
+    fn ring_inputs<const MOST: usize>(&mut self, args: RenderArgs, out: &mut [f32]) -> usize {
         let n = out.len();
         if let Some(field) = &mut self.field {
-            field.gather(terms.position, n);
+            field.gather(args.position, n);
         }
         let mut inputs = [Input { impulses: &[], gains: &[] }; MOST];
         let mut count = 0;
         if let Some(field) = &self.field {
-            field.inputs(terms.position, n, |input| {
+            field.inputs(args.position, n, |input| {
                 inputs[count] = input;
                 count += 1;
             });
         }
         // Only positions that something reaches are mixed; adding zeros would change nothing.
-        self.places.iter_mut().for_each(|place| place.gather(terms.position, n));
+        self.places.iter_mut().for_each(|place| place.gather(args.position, n));
         for place in &self.places {
             if place.reached || count == 0 {
                 inputs[count] = Input { impulses: &place.input[..n], gains: &place.gains };
@@ -79,12 +79,12 @@ impl BodySlot {
             }
         }
         let groups = self.bank.groups();
-        let driven = self.levels[terms.mode_level];
+        let driven = self.levels[args.mode_level];
         if let Some(rub) = self.rub.as_deref_mut().filter(|rub| rub.rubs()) {
             // Beside another input the only position of a body needs gains too.
             let plain = inputs[..count].iter_mut().filter(|input| input.gains.is_empty());
             plain.for_each(|input| input.gains = &self.ones);
-            rub.run(terms.position, n, driven, &self.bank, &inputs[..count]);
+            rub.run(args.position, n, driven, &self.bank, &inputs[..count]);
         }
         if let Some(rub) = self.rub.as_deref().filter(|rub| rub.rubs()) {
             rub.inputs(n, |input| {
@@ -93,7 +93,7 @@ impl BodySlot {
             });
         }
         if let Some(pickups) = &mut self.pickups {
-            let strikes = self.field.as_ref().map_or(0, |field| field.strikes_at(terms.position));
+            let strikes = self.field.as_ref().map_or(0, |field| field.strikes_at(args.position));
             let heard = inputs[..count].iter().enumerate().map(|(i, input)| {
                 let of = |place: &&Place| std::ptr::eq(place.input.as_ptr(), input.impulses.as_ptr());
                 let own = || self.places.iter().find(of).and_then(|place| place.struck.as_deref());
@@ -101,17 +101,17 @@ impl BodySlot {
                     if i < strikes { Some(input.impulses) } else { own().map(|struck| &struck[..n]) };
                 Heard { input: *input, struck }
             });
-            pickups.render(terms.position, n, self.strike_gain, heard);
+            pickups.render(args.position, n, self.strike_gain, heard);
         }
         let inputs = match inputs[..count] {
             [Input { impulses, gains: [] }] => Inputs::One(impulses),
             _ => Inputs::Placed(&inputs[..count]),
         };
         // What rubs it asks its bank how it will move.
-        if terms.heard || self.rub.as_ref().is_some_and(|rub| !rub.is_idle()) {
-            self.bank.render_leading(driven, terms.position, inputs, out);
+        if args.has_buses || self.rub.as_ref().is_some_and(|rub| !rub.is_idle()) {
+            self.bank.render_leading(driven, args.position, inputs, out);
         }
-        self.end_stretch(terms.position, n);
+        self.end_stretch(args.position, n);
         groups - driven
     }
 

@@ -32,6 +32,7 @@ pub use local::{LocalMap, local_map};
 pub use probability::{PROBABILITY_SIDES, probability_dimension};
 pub use transect::{Transects, transects};
 
+use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_surface::raster::Raster;
 use serde::Serialize;
 
@@ -137,7 +138,7 @@ pub fn spectral_exponent(dimension: f64) -> f64 {
 /// Hasti's roughness R = (D − 2.25)/0.75, clamped to 0–1.
 #[must_use]
 pub fn roughness(dimension: f64) -> f64 {
-    ((dimension - 2.25) / 0.75).clamp(0.0, 1.0)
+    FractalNoise::roughness(spectral_exponent(dimension))
 }
 
 /// Refuses what no estimator can read.
