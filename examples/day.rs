@@ -220,7 +220,7 @@ fn main() {
         let (stats, held) = (day.scene.stats(), counting::held_bytes());
         let gone = stats.stale + stats.too_soon;
         println!(
-            "{:5.2} h  {} bodies  {} of {} strikes, {gone} told as gone  {held} bytes  peak {:.3}  ahead {}  quarantined {}",
+            "{:5.2} h  {} bodies  {} of {} strikes, {gone} of bodies that were gone  {held} bytes  peak {:.3}  ahead {}  quarantined {}",
             (level + 1) as f64 / 6.0,
             day.bodies_made,
             stats.impacts,

@@ -93,7 +93,7 @@ pub fn usage_line(refusal: &clap::Error) -> String {
     let what = match refusal.kind() {
         clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
         | clap::error::ErrorKind::MissingSubcommand => "VERB: none is given".to_owned(),
-        _ => lines.join(" ").trim_start_matches("error: ").to_owned(),
+        _ => lines.join(" ").trim_start_matches("error: ").replace(" tip:", "; tip:"),
     };
     let what: String = what.split(char::is_control).collect::<Vec<_>>().join(" ");
     let what = NUMBERS.iter().fold(what, |what, (refused, right)| what.replace(refused, right));

@@ -17,6 +17,7 @@ use crate::error::CliError;
 use crate::import::EXTENSION;
 use crate::modes::preset;
 use crate::output::{self, Outputs};
+use crate::paths::without_ends;
 use asperity::{Material, ModalModel, ModeShapes};
 use binary::Binary;
 use clap::Args;
@@ -74,7 +75,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         }
         report.bodies += 1;
         report.modes += model.modes.len();
-        document.body(&name(path), &model, shapes, material.is_some());
+        document.body(&without_ends(path), &model, shapes, material.is_some());
     }
     let mut outputs = Outputs::new();
     outputs.write(&options.output, &document.finish(material.as_ref(), packed))?;
@@ -83,12 +84,6 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         let Report { bodies, modes, warnings, .. } = &report;
         format!("{}: {bodies} bodies, {modes} modes{}", options.output.display(), output::warned(warnings))
     })
-}
-
-/// A body's name: its file's without endings.
-fn name(path: &Path) -> String {
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
-    file.split_once('.').map_or(&*file, |(stem, _)| stem).to_owned()
 }
 
 /// Document so far.

@@ -206,6 +206,13 @@ pub fn with_suffix(stem: &Path, suffix: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
+/// A path as a shell takes it: in quotes where it holds more than letters and marks.
+pub fn quoted(path: &Path) -> String {
+    let path = path.display().to_string();
+    let is_plain = path.chars().all(|c| c.is_alphanumeric() || "-_./\\:+=,@".contains(c));
+    if is_plain { path } else { format!("\"{path}\"") }
+}
+
 /// Writes text to stdout; a closed pipe is the reader's choice, not an error.
 pub fn say(text: &str) {
     let _ = print(text);

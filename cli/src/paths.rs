@@ -107,6 +107,14 @@ pub fn has_end(path: &Path, ends: &[&str]) -> bool {
     path.extension().is_some_and(|end| ends.iter().any(|known| end.eq_ignore_ascii_case(known)))
 }
 
+/// A file's name without folder, ending, and the kind before it: `pan.take1` of
+/// `pan.take1.modes.json`.
+pub fn without_ends(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let kind = [".modes", ".haptic", ".audio"].iter().find_map(|kind| stem.strip_suffix(kind));
+    kind.map_or(stem.clone(), str::to_owned)
+}
+
 /// Refuses a path that ends as another kind of file does.
 ///
 /// # Errors

@@ -121,7 +121,8 @@ impl Kind {
                 return Err(CliError::file(what, "is a mesh", right));
             }
             _ if has_end(what, &["png", "jpg", "jpeg", "toml", "exr"]) => {
-                let right = "`asperity stroke` takes maps, photographs and scenes";
+                let right = "`asperity stroke` takes maps, photographs and the surfaces of scenes, \
+                             `asperity render` a scene with its log";
                 return Err(CliError::file(what, "is nothing to strike", right));
             }
             _ => Self::Recording,
@@ -167,7 +168,7 @@ impl Body {
             }
             Kind::Modes => options.what.clone(),
             Kind::Recording => {
-                let modes = folder.path().join(format!("{}.modes.json", stem(&options.what)));
+                let modes = folder.path().join(format!("{}.struck.modes.json", stem(&options.what)));
                 let fitted =
                     fit::fit(&fit::Options { burst_ms: Some(BURST_MS), ..plain(&options.what, &modes)? })?;
                 remarks.assumed.push(format!(
@@ -185,6 +186,9 @@ impl Body {
         table.insert("modes".into(), Value::String(modes.to_string_lossy().into_owned()));
         if let Some(name) = options.material.and_then(|material| material.name()) {
             table.insert("material".into(), Value::String(name.to_owned()));
+        } else {
+            let soft = "hit as if it were of PLA, which a hard striker dents (--material says what it is)";
+            remarks.assumed.push(soft.to_owned());
         }
         let home = std::env::current_dir().unwrap_or_default();
         let table = sounds::with_absolute_paths(&table, &home);

@@ -119,13 +119,15 @@ fn a_loop_follows_itself_without_a_step() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     map(&folder.join("map.pgm"));
-    for (path, seconds) in [("line", 1.0), ("circle", 0.7), ("zigzag", 1.3)] {
+    for (path, seconds) in [("line", 1.0), ("circle", 3.0), ("zigzag", 1.3)] {
         let length = seconds.to_string();
         let arguments =
             ["stroke", "map.pgm", "-o", "set", "--path", path, "--loop", "--seconds", &length, "--json"];
         let report = json_of(folder, &arguments);
         let name = &names(&report)[0];
         assert!(name.ends_with("-loop"), "{name}");
+        let repeats = report["assumed"].to_string().contains("the loop repeats every");
+        assert_eq!(repeats, path == "circle", "{}", report["assumed"]);
         for end in ["wav", "haptic.wav"] {
             let sound = samples(&folder.join(format!("set/{name}.{end}")));
             assert_eq!(sound.len(), (seconds * 44_100.0_f64).round() as usize);
@@ -179,6 +181,13 @@ fn a_clipped_recording_that_is_struck_is_said_to_be_clipped() {
     let report = json_of(folder, &["strike", "too loud.wav", "-o", "hits", "--json"]);
     let warnings = report["warnings"].to_string();
     assert!(warnings.contains("clipping"), "{report}");
+    assert!(report["assumed"].to_string().contains("of PLA"), "{report}");
+    // Takes keep their numbers, and a fit of one's own stays what it is.
+    fs::rename(folder.join("too loud.wav"), folder.join("pan.take2.wav")).unwrap();
+    fs::write(folder.join("pan.take2.modes.json"), "mine").unwrap();
+    let report = json_of(folder, &["strike", "pan.take2.wav", "-o", ".", "--json"]);
+    assert_eq!(names(&report), ["pan.take2-wood-1m_s"]);
+    assert_eq!(fs::read_to_string(folder.join("pan.take2.modes.json")).unwrap(), "mine");
 }
 
 #[test]
@@ -203,6 +212,11 @@ fn unplayable_things_name_the_helping_verb_and_leave_no_folder() {
         (vec!["stroke", "scene.toml", "--width-m", "0.2"], vec!["--width-m: is for maps and photographs"]),
         (vec!["stroke", "scene.toml", "--surface", "top"], vec!["--surface: \"top\" is unknown", "plate"]),
         (vec!["stroke", "scene.toml", "--path", "stroke.jsonl", "--loop"], vec!["--loop: stands beside"]),
+        (
+            vec!["stroke", "scene.toml", "--path", "stroke.jsonl", "--speed", "0.2"],
+            vec!["--speed: stands beside"],
+        ),
+        (vec!["stroke", "scene.toml", "--material", "stone"], vec!["--material", "stock = \"plate\""]),
     ] {
         let mut all = arguments.clone();
         all.extend(["-o", "out"]);

@@ -94,7 +94,7 @@ pub struct Renderer {
     /// On its way to silence or back.
     master: Smoothed,
     /// Other threads, where there are any.
-    crew: Option<RenderPool>,
+    pool: Option<RenderPool>,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -127,9 +127,9 @@ impl Renderer {
         let voices = config.voices();
         let bodies = config.max_bodies + TAILS;
         let sizes = (voices, config.max_surfaces, bodies);
-        let crew = (config.threads > 1).then(|| RenderPool::new(config.threads, sizes, &shared)).transpose();
-        let crew =
-            crew.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
+        let pool = (config.threads > 1).then(|| RenderPool::new(config.threads, sizes, &shared)).transpose();
+        let pool =
+            pool.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
         Ok(Self {
             position: 0,
             given: 0,
@@ -164,7 +164,7 @@ impl Renderer {
             muted: false,
             paused: false,
             master: Smoothed::new(rate),
-            crew,
+            pool,
             scratch: Scratch::new(),
             mix: Mix::new(),
             shared: Arc::new(shared),

@@ -79,6 +79,20 @@ fn distance(a: &str, b: &str) -> usize {
     rows[a.len()][b.len()]
 }
 
+/// The first number behind a colon or an equals sign that is written with a decimal comma, as it
+/// would be right: `0.59` of `gain = 0,59`.
+#[must_use]
+pub fn decimal_comma(line: &str) -> Option<String> {
+    line.match_indices([':', '=']).find_map(|(place, _)| {
+        let value = line[place + 1..].trim_start();
+        let end = value.find(|c: char| !c.is_ascii_digit() && !"+-,.".contains(c)).unwrap_or(value.len());
+        let (whole, part) = value[..end].split_once(',')?;
+        let part = part.split(',').next().unwrap_or_default();
+        let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+        (digits(whole.trim_start_matches(['+', '-'])) && digits(part)).then(|| format!("{whole}.{part}"))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,5 +129,14 @@ mod tests {
         assert_eq!(distance("ca", "abc"), 3);
         assert_eq!(distance("unifrom", "uniform"), 1);
         assert_eq!(distance("", "abc"), 3);
+    }
+
+    #[test]
+    fn a_number_with_a_decimal_comma_is_read_as_it_was_meant() {
+        assert_eq!(decimal_comma("gain = 0,59").as_deref(), Some("0.59"));
+        assert_eq!(decimal_comma("{\"t\":-1,5,\"contact\":3}").as_deref(), Some("-1.5"));
+        for right in ["{\"t\":1,\"uv\":[0.1,0.2]}", "size = [1,2]", "name = \"a,b\"", "a = 1.5, b = 2"] {
+            assert_eq!(decimal_comma(right), None, "{right}");
+        }
     }
 }

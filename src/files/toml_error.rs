@@ -1,5 +1,6 @@
 //! Errors of a TOML file that is read by types: line and key, what is wrong, what would be right.
 
+use super::nearest::decimal_comma;
 use super::{FileError, nearest};
 
 impl FileError {
@@ -20,6 +21,8 @@ impl FileError {
         let start = error.span().map_or(0, |span| span.start.min(text.len()));
         let line = 1 + text[..start].matches('\n').count();
         let written = text.lines().nth(line - 1).unwrap_or_default();
+        let meant = decimal_comma(written).map(|number| format!("write {number}"));
+        let right = meant.as_deref().unwrap_or(right);
         match written.split_once('=') {
             Some((key, _)) => Self::new(format!("line {line}: {}", key.trim()), message, right),
             None => Self::new(format!("line {line}"), message, right),
@@ -73,6 +76,7 @@ mod tests {
                 "line 2: label: invalid type: integer `3`, expected a string; must be a profile",
             ),
             ("label = \"x\"\nband_hz = [1", "line 2: band_hz: "),
+            ("label = 0,5\n", "line 1: label: unexpected key or value, expected newline, `#`; write 0.5"),
         ] {
             let error = toml::from_str::<Profile>(text).unwrap_err();
             let line = FileError::toml(text, &error, "must be a profile").to_string();

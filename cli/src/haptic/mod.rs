@@ -93,6 +93,13 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if let Some(points) = options.port.points.filter(|hz| !(1.0..=4000.0).contains(hz)) {
         return Err(CliError::new("--points", format!("{points} is refused"), "must be 1 to 4000 Hz"));
     }
+    if let Some(sound) = &options.port.sound {
+        let beside = options.output.parent().unwrap_or(Path::new("")).join(sound);
+        if !beside.is_file() {
+            let right = format!("name it as seen from {}", options.output.display());
+            return Err(CliError::new("--sound", format!("{} is not there", beside.display()), right));
+        }
+    }
     let device = device(&options.port.device)?;
     let input = input::read(&options.input, options.channel, &device)?;
     let mut outputs = Outputs::new();
@@ -257,7 +264,9 @@ fn reduced(
     drop(progress);
     let mut warnings = remarks;
     let peak = reduction.clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);
-    if peak < FAINT {
+    if peak == 0.0 {
+        warnings.push("nothing is felt in it: every sample is 0".to_owned());
+    } else if peak < FAINT {
         warnings.push(format!(
             "the clip's peak is {peak:.2e} of what the device can; --normalise brings it to 1"
         ));

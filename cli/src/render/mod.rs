@@ -161,7 +161,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 /// As [`run`].
 pub fn render(options: &Options) -> Result<Report, CliError> {
     let stem = &options.output;
-    if stem.file_name().is_none() {
+    if stem.file_name().is_none() || stem.as_os_str().to_string_lossy().ends_with(['/', '\\']) {
         return Err(CliError::file(stem, "is not a file name", "write -o FOLDER/NAME"));
     }
     check_destination(&with_suffix(stem, "audio.wav"))?;

@@ -16,6 +16,7 @@ mod seam;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
+use crate::paths::without_ends;
 use crate::progress::Progress;
 use crate::render;
 use crate::wav::{self, Bits};
@@ -42,7 +43,8 @@ pub const MOST_TAIL_S: f64 = 20.0;
 /// Options of both verbs.
 #[derive(Debug, Clone, Args)]
 pub struct Options {
-    /// Folder to fill
+    /// Folder to fill. The loudest sample of the set lies 1 dB below full scale, unless the scene
+    /// gives a gain under [audio]
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: PathBuf,
     /// Sample format: 16 or 24 bits, or 32-bit float
@@ -303,7 +305,7 @@ fn write(
 fn in_words(report: &Report, folder: &Path) -> String {
     let mut lines: Vec<String> = report.assumed.clone();
     let widest = 4 + report.files.iter().map(|file| file.name.chars().count()).max().unwrap_or(0);
-    let number = |value: Option<f64>| value.map_or("silence".to_owned(), |value| format!("{value:.1}"));
+    let number = |value: Option<f64>| value.map_or("silent".to_owned(), |value| format!("{value:.1}"));
     lines.extend(report.files.iter().map(|file| {
         format!(
             "  {:widest$}  {:6.2} s  {:>7} LUFS  {:>7} dBFS",
@@ -319,7 +321,7 @@ fn in_words(report: &Report, folder: &Path) -> String {
     lines.push(format!("wrote {} {sounds} to {}", report.files.len(), folder.display()));
     lines.push(format!(
         "the same again: asperity render {} -o take",
-        folder.join(format!("{last}.toml")).display()
+        output::quoted(&folder.join(format!("{last}.toml")))
     ));
     lines.join("\n")
 }
@@ -339,9 +341,8 @@ pub fn short(value: f64) -> String {
 
 /// A file's name without folder and ends, fit to be part of another.
 pub fn stem(path: &Path) -> String {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let stem = name.split('.').next().unwrap_or_default();
-    stem.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
+    let stem = without_ends(path);
+    stem.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
 /// The end of a name that numbers a take: nothing where there is one.
@@ -357,6 +358,7 @@ mod tests {
     fn names_of_takes_sort_as_numbers_do() {
         assert_eq!([take_suffix(1, 1), take_suffix(3, 9), take_suffix(7, 10)], ["", "-3", "-07"]);
         assert_eq!(stem(Path::new("hits/big pan.modes.json")), "big_pan");
+        assert_eq!(stem(Path::new("hits/pan.take2.wav")), "pan.take2");
         assert_eq!([short(0.3), short(1.0), short(0.123_456)], ["0.3", "1", "0.1235"]);
     }
 }

@@ -66,7 +66,8 @@ impl Ground {
             return Ok((Self::of_scene(options, &scene, name)?, Told::default()));
         }
         if !what.is_file() {
-            let right = "name a map, a photograph, a folder of from-photo or a scene";
+            let right = "name a map, a photograph, a folder of from-photo or a scene; \
+                         `asperity texture solid granite -o granite.png` makes a map";
             return Err(CliError::file(what, "no such file", right));
         }
         if has_end(what, &["toml"]) {
@@ -89,8 +90,11 @@ impl Ground {
             relief_m: options.relief_m,
             ..plain(&options.what, &maps)?
         })?;
-        let assumed =
+        let mut assumed =
             vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];
+        if body.is_none() {
+            assumed.push("on a free bar, whatever the picture shows (--material NAME: a plate of it)".into());
+        }
         let remarks = Told { assumed, warnings: report.warnings().to_vec() };
         let plain = Options { width_m: None, relief_m: None, material: None, ..options.clone() };
         let mut ground = Self::of_scene(&plain, &maps.join("scene.toml"), name)?;
@@ -145,7 +149,14 @@ impl Ground {
             ("--material", options.material.is_some()),
         ] {
             if is_given {
-                let right = format!("change it in {}", path.display());
+                let right = match option {
+                    "--material" => format!(
+                        "write stock = \"plate\", size_m = {} and material = … for the body in {}, in place of modes",
+                        BODY.1,
+                        path.display()
+                    ),
+                    _ => format!("change it in {}", path.display()),
+                };
                 return Err(CliError::new(option, "is for maps and photographs", right));
             }
         }
@@ -177,7 +188,7 @@ impl Ground {
                 _ => CliError::file(
                     &options.what,
                     "has no surface",
-                    "write a [[surface]], or `asperity strike` it",
+                    "write a [[surface]]; blows are for a contact log and `asperity render`",
                 ),
             }
         })?;

@@ -163,6 +163,25 @@ impl Hand {
         }
     }
 
+    /// Remark on a circle, or a line to and fro, that comes round more than once: it sounds the same
+    /// each time.
+    pub fn repetition(&self) -> Option<String> {
+        let reach_m = match self.path {
+            Path::Circle => REACH * self.extent_m[0].min(self.extent_m[1]),
+            Path::Line if !self.runs_on => REACH * self.extent_m[0],
+            _ => return None,
+        };
+        let turn_s = TAU / self.turns(reach_m).1;
+        let turns = (self.seconds / turn_s).round();
+        (turns > 1.0).then(|| {
+            format!(
+                "at {} m/s the hand comes round {turns} times: the loop repeats every {turn_s:.2} s \
+                 (--path zigzag does not)",
+                self.speed_m_s
+            )
+        })
+    }
+
     /// Radius, m, and rate, rad/s, of whole turns in the time at the speed, the radius within
     /// reach.
     fn turns(&self, reach_m: f64) -> (f64, f64) {

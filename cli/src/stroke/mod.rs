@@ -20,6 +20,10 @@ use std::path::PathBuf;
 
 /// A loop begins this long after the landing, when the finger's arrival has died away, s.
 const SETTLED_S: f64 = 1.0;
+/// Stroke where no option says another.
+const SPEED_M_S: f64 = 0.1;
+const FORCE_N: f64 = 0.6;
+const SECONDS: f64 = 2.0;
 
 /// Stroke a surface and write what it sounds and feels like, with the scene and the log of each
 /// sound beside it
@@ -33,19 +37,19 @@ pub struct Options {
     /// Probe: fingertip, fingernail, stylus, …, or a probe of the scene [default: the scene's]
     #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',')]
     pub probe: Vec<String>,
-    /// Speed, m/s
-    #[arg(long, value_name = "M_S", num_args = 1.., value_delimiter = ',', default_value = "0.1", value_parser = positive)]
+    /// Speed, m/s [default: 0.1]
+    #[arg(long, value_name = "M_S", num_args = 1.., value_delimiter = ',', value_parser = positive)]
     pub speed: Vec<f64>,
-    /// Pressing force, N
-    #[arg(long, value_name = "N", num_args = 1.., value_delimiter = ',', default_value = "0.6", value_parser = positive)]
+    /// Pressing force, N [default: 0.6]
+    #[arg(long, value_name = "N", num_args = 1.., value_delimiter = ',', value_parser = positive)]
     pub force: Vec<f64>,
     /// Motion of the hand: line, circle, zigzag, or a contact log, which is rendered at the scene's
     /// own levels
     #[arg(long, value_name = "line|circle|zigzag|LOG.jsonl", default_value = "line")]
     pub path: Way,
-    /// Length of the stroke, and of a loop, s
-    #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
-    pub seconds: f64,
+    /// Length of the stroke, and of a loop, s [default: 2]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub seconds: Option<f64>,
     /// Cut each sound so that it follows itself without a seam
     #[arg(long = "loop")]
     pub seamless: bool,
@@ -73,13 +77,19 @@ pub struct Options {
 /// # Errors
 /// When the surface is none, an option does not fit it, or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    if options.seamless && matches!(options.path, Way::Log(_)) {
-        let right = "leave out --loop, or write --path line, circle or zigzag";
-        return Err(CliError::new("--loop", "stands beside a contact log", right));
+    let beside_a_log = [
+        ("--loop", options.seamless),
+        ("--speed", !options.speed.is_empty()),
+        ("--force", !options.force.is_empty()),
+        ("--seconds", options.seconds.is_some()),
+    ];
+    if let (Way::Log(_), Some((option, _))) = (&options.path, beside_a_log.iter().find(|(_, given)| *given)) {
+        let right = format!("leave out {option}, or write --path line, circle or zigzag");
+        return Err(CliError::new(option, "stands beside a contact log", right));
     }
     let folder = Folder::open(&options.sounds.output)?;
-    let (ground, remarks) = Ground::of(options, &folder)?;
-    let sounds = sounds_of(options, &ground)?;
+    let (ground, mut remarks) = Ground::of(options, &folder)?;
+    let sounds = sounds_of(options, &ground, &mut remarks.assumed)?;
     let mut inputs = ground.inputs.clone();
     if let Way::Log(path) = &options.path {
         inputs.push(path.clone());
@@ -87,7 +97,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     sounds::make(&sounds, &options.sounds, &folder, &inputs, remarks)
 }
 
-fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError> {
+fn sounds_of(options: &Options, ground: &Ground, assumed: &mut Vec<String>) -> Result<Vec<Sound>, CliError> {
     if let Way::Log(path) = &options.path {
         let log = ContactLog::load(path).map_err(CliError::from_error)?;
         let name = format!("{}-{}", ground.name, sounds::stem(path));
@@ -106,18 +116,20 @@ fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError>
         [] => vec![None],
         probes => probes.iter().map(|probe| Some(probe.as_str())).collect(),
     };
-    let takes = options.sounds.takes;
+    let or = |given: &[f64], usual: f64| if given.is_empty() { vec![usual] } else { given.to_vec() };
+    let (speeds_m_s, forces_n) = (or(&options.speed, SPEED_M_S), or(&options.force, FORCE_N));
+    let (takes, seconds) = (options.sounds.takes, options.seconds.unwrap_or(SECONDS));
     let mut sounds = Vec::new();
     for probe in probes {
         let (scene, named) = ground.with_probe(probe)?;
-        for speed_m_s in &options.speed {
-            for force_n in &options.force {
+        for speed_m_s in &speeds_m_s {
+            for force_n in &forces_n {
                 for take in 1..=takes {
                     let hand = Hand {
                         path: options.path.clone(),
                         speed_m_s: *speed_m_s,
                         force_n: *force_n,
-                        seconds: options.seconds,
+                        seconds,
                         settled_s: options.seamless.then_some(SETTLED_S),
                         extent_m: ground.extent_m,
                         runs_on: ground.runs_on,
@@ -126,6 +138,9 @@ fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError>
                         seed: options.sounds.seed.wrapping_mul(1000).wrapping_add(u64::from(take)),
                         is_first: take == 1,
                     };
+                    if let Some(remark) = hand.repetition().filter(|_| options.seamless && take == 1) {
+                        assumed.push(remark);
+                    }
                     let name = format!(
                         "{}-{}-{}m_s-{}N-{}{}{}",
                         ground.name,
@@ -136,8 +151,7 @@ fn sounds_of(options: &Options, ground: &Ground) -> Result<Vec<Sound>, CliError>
                         if options.seamless { "-loop" } else { "" },
                         take_suffix(take, takes)
                     );
-                    let cut =
-                        options.seamless.then_some(Loop { from_s: SETTLED_S, seconds: options.seconds });
+                    let cut = options.seamless.then_some(Loop { from_s: SETTLED_S, seconds });
                     let (scene, log) = (scene.clone(), hand.log());
                     let tail_s = if options.seamless { 0.0 } else { MOST_TAIL_S.min(ground.tail_s) };
                     sounds.push(Sound { name, scene, log, tail_s, is_felt: true, cut });

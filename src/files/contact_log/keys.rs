@@ -3,7 +3,7 @@
 
 use super::object::Object;
 use super::{LogError, VERSION};
-use crate::files::nearest::nearest;
+use crate::files::nearest::{decimal_comma, nearest};
 use crate::model::material::Material;
 use serde_json::{Map, Value};
 
@@ -328,6 +328,10 @@ fn malformed(line: &str, place: String, error: &serde_json::Error) -> LogError {
     }
     if !line.contains('{') && line.matches([',', ';', '\t']).count() > 1 {
         return LogError::Malformed { place, message: "is a row of a table (CSV), not of a log".to_owned() };
+    }
+    if let Some(right) = decimal_comma(line) {
+        let message = format!("has a decimal comma; write {right}");
+        return LogError::Malformed { place, message };
     }
     let text = error.to_string();
     let what = text.split(" at line ").next().unwrap_or_default();

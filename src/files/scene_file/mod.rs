@@ -24,6 +24,7 @@ pub use source::{Brownian, Lattice, Source};
 pub use surface::{RoughnessEntry, SurfaceEntry};
 
 use crate::files::FileError;
+use crate::files::nearest::decimal_comma;
 use crate::files::other_file::other_file;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
@@ -175,7 +176,9 @@ impl SceneFile {
         let table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
             let line =
                 error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-            FileError::file(path, format!("line {line}: {}", error.message()), "a scene file is TOML")
+            let written = text.lines().nth(line - 1).and_then(decimal_comma);
+            let right = written.map_or("a scene file is TOML".to_owned(), |right| format!("write {right}"));
+            FileError::file(path, format!("line {line}: {}", error.message()), right)
         })?;
         read(Fields::new(table, ""), path).map_err(|error| error.within(path.display()))
     }

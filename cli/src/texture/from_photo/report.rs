@@ -205,8 +205,8 @@ impl Report {
             output::warned(&self.warnings),
             self.files.len(),
             options.output.display(),
-            options.output.join("scene.toml").display(),
-            options.output.join("stroke").display(),
+            output::quoted(&options.output.join("scene.toml")),
+            output::quoted(&options.output.join("stroke")),
         );
         text
     }

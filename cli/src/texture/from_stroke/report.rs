@@ -50,7 +50,7 @@ impl Written<'_> {
             "{}\nwrote {}; hear and feel it: asperity render {} -o stroke",
             output::warned(report.warnings),
             self.files.join(", "),
-            folder.join("scene.toml").display()
+            output::quoted(&folder.join("scene.toml"))
         ));
         text
     }
