@@ -27,8 +27,8 @@ use asperity::offline::{self, Options};
 use asperity::surface::height_map::HeightMap;
 use asperity::surface::raster::Raster;
 use asperity::{
-    AudioBus, Body, BodyId, ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
-    Extent, Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
+    Body, BodyId, ChannelId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Extent,
+    Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
 };
 use std::error::Error;
 use std::path::PathBuf;
@@ -90,8 +90,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// 2. Build the engine; say what can be touched, and what rings when it is.
 fn setup(clock: ClockMode) -> Result<Engine, Box<dyn Error>> {
-    let audio = AudioBus { limit: true, ..AudioBus::default() }; // a sound card clips at ±1
-    let config = Config { clock, sample_rate_hz: rate_hz(), audio: vec![audio], ..Config::default() };
+    // Levels are found as things are added, and a limiter stands behind: a sound card clips at ±1.
+    let config = Config { clock, ..Config::live(rate_hz()) };
     let mut engine = config.build()?;
     let tile = engine.scene.add_body(Body::new(tile()?).material(Material::CERAMIC))?; // or Body::stock(…)
     let plate = engine.scene.add_surface(grooves()?.body(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)

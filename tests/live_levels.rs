@@ -186,6 +186,29 @@ fn a_finger_with_its_own_level_is_within_a_decibel_of_scenes() {
     assert!(worst[0] <= 1.0 && worst[1] <= 1.0, "{worst:?}");
 }
 
+/// Settled rms of a finger on a wooden plate that rings long, by the engine's own probe or an added
+/// one.
+fn finger_on_a_plate(levels: LevelPolicy, is_added: bool) -> f64 {
+    let mut played = Played::new(live(levels));
+    let probe = is_added.then(|| {
+        // What is added before it is loud, and rings on.
+        played.scene.add_probe(probe_by_name("steel-rod").unwrap()).unwrap();
+        played.scene.add_probe(probe_by_name("fingertip").unwrap()).unwrap()
+    });
+    let plate = played.body(Body::stock(Stock::Bowl, Material::STEEL, 0.3).unwrap());
+    let surface = played.scene.add_surface(ground(1e-4, Material::STEEL).body(plate)).unwrap();
+    let touching = Touching { probe, ..Touching::on(surface) };
+    rms(&played.stroke(touching, 1.0, 0.1)[0])
+}
+
+#[test]
+fn an_added_finger_is_as_loud_as_the_engines_own() {
+    for levels in [LevelPolicy::Shared, LevelPolicy::Each, LevelPolicy::AsGiven] {
+        let [own, added] = [false, true].map(|is_added| finger_on_a_plate(levels, is_added));
+        assert!(db(added / own).abs() < 0.1, "{levels:?}: {} dB", db(added / own));
+    }
+}
+
 #[test]
 fn what_sounds_keeps_its_level_when_something_louder_is_added() {
     let played = |louder: bool| {
@@ -388,6 +411,19 @@ fn strokes_that_clip_are_named_with_their_surface() {
     let [heard, _] = found.stroke(Touching::on(bricks).probe(rigid).held_by(crate_), 63.0, 1.0);
     println!("crate on bricks: {:.1} dB rms, limiter {:.1} dB", db(rms(&heard)), found.renderer.limiter_db());
     assert!(found.renderer.limiter_db() <= 6.0 && db(rms(&heard)) > -40.0);
+}
+
+#[test]
+fn a_felt_blow_that_clips_is_no_blow_that_is_heard() {
+    let mut played = Played::new(live(LevelPolicy::Shared));
+    let body = played.body(Body::stock(Stock::Box, Material::SOFTWOOD, 0.3).unwrap());
+    let felt = Impact { mass_kg: 5.0, speed_m_s: 4.0, ..Impact::on(body) }.felt_by(ChannelId(0));
+    played.step(Some(ContactEvent::Impact(felt)));
+    (0..12).for_each(|_| played.step(None));
+    let because = played.scene.why_clipped();
+    assert!(matches!(because[..], [ClipReason::Felt { by_db }] if by_db > 6.0), "{because:?}");
+    let message = because[0].to_string();
+    assert!(message.contains("full_scale") && message.contains("Impact::gain"), "{message}");
 }
 
 #[test]

@@ -45,6 +45,15 @@ pub enum ClipReason {
         /// Greatest speed of them, m/s.
         speed_m_s: f64,
     },
+    /// More is felt than a haptic channel plays.
+    #[error(
+        "what is felt is {by_db:.0} dB over full scale of a haptic channel; raise full_scale of the actuator, or lower \
+         gain of the impacts and contacts that are felt (Impact::gain, Touching::gain)"
+    )]
+    Felt {
+        /// By how much, dB.
+        by_db: f64,
+    },
     /// Several things add up.
     #[error(
         "what sounds at once adds up to {by_db:.0} dB over full scale; lower gain of the bus (AudioBus::gain), or raise \
@@ -61,7 +70,10 @@ impl ClipReason {
     #[must_use]
     pub fn by_db(&self) -> f64 {
         match self {
-            Self::Blows { by_db, .. } | Self::Strokes { by_db, .. } | Self::Sum { by_db } => *by_db,
+            Self::Blows { by_db, .. }
+            | Self::Strokes { by_db, .. }
+            | Self::Felt { by_db }
+            | Self::Sum { by_db } => *by_db,
         }
     }
 }

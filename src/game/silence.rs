@@ -193,7 +193,7 @@ pub enum SilenceReason {
     AudioGainZero,
     /// Contacts slide on surfaces that ring nothing.
     #[error(
-        "no contact touched a surface that rings a body; give the surface body = \"…\", Surface::on(body), and the \
+        "no contact touched a surface that rings a body; give the surface body = \"…\", Surface::body(body), and the \
          body modes"
     )]
     NothingRings,

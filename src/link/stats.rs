@@ -25,6 +25,9 @@ macro_rules! counters {
             load_bits: AtomicU32,
             /// Peak level of each audio bus.
             pub(crate) bus_peak_bits: Box<[AtomicU32]>,
+            /// By how much the peak limiters of buses, and of haptic channels, have turned down at
+            /// most, whole dB.
+            pub(crate) limiters_db: [AtomicU64; 2],
             /// Resets that the game half has asked for.
             pub(crate) resets_asked: AtomicU64,
             /// The game clock's epoch: what was stamped in an earlier one is due at once.

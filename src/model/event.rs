@@ -322,7 +322,18 @@ impl Impact {
 
     /// From what most physics engines report of a collision: the impulse along the normal, N·s, and
     /// the approach speed. The mass follows from J = m v (1 + e), so that the body receives the
-    /// impulse that was reported.
+    /// impulse that was reported; the striker stays the small steel ball of [`Impact::on`].
+    /// [`striker`](Self::striker) would set the mass anew: another material or radius is a field.
+    ///
+    /// ```
+    /// # use asperity::{BodyId, Impact, Material};
+    /// # let floor = BodyId::from_bits(1);
+    /// let crate_lands = Impact {
+    ///     striker: Material::WOOD,
+    ///     radius_m: 0.02,
+    ///     ..Impact::from_impulse(floor, 20.0, 4.0, 0.2)
+    /// };
+    /// ```
     #[must_use]
     pub fn from_impulse(body: BodyId, impulse_n_s: f64, speed_m_s: f64, restitution: f64) -> Self {
         let mass_kg = impulse_n_s / (speed_m_s.max(1e-6) * (1.0 + restitution));

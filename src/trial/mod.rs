@@ -13,6 +13,7 @@ use crate::model::levels::{
 use crate::model::material::Material;
 use crate::model::probe::THING_PROBE;
 use crate::model::surface::{Roughness, Surface};
+use asperity_dsp::micro_contact::Probe;
 use asperity_surface::height_field::{HeightField, MAX_BLOCK, PathBlock, Setup, SurfaceBlock};
 use bench::{Bench, Motion, RATE_HZ};
 use std::hash::{DefaultHasher, Hash};
@@ -42,53 +43,59 @@ fn of_body(config: &Config, body: &Body) -> Result<BodyTrial, AddError> {
 }
 
 /// Renders over a surface with each probe, and gives the surface back. What rings is `body`: its
-/// own, or where it has none, what is held.
+/// own, or where it has none, what is held. Each probe has an engine of its own, in which nothing
+/// rings yet.
 fn of_surface(
     config: &Config,
     mut surface: Surface,
     body: &Body,
     probes: &Probes,
 ) -> Result<SurfaceTrials, AddError> {
+    let mut trials = Vec::new();
+    for (place, probe) in probes {
+        let trial;
+        (surface, trial) = with_probe(config, surface, body, place.map(|_| *probe))?;
+        trials.push(trial);
+    }
+    Ok((surface, trials))
+}
+
+fn with_probe(
+    config: &Config,
+    mut surface: Surface,
+    body: &Body,
+    probe: Option<Probe>,
+) -> Result<(Surface, StrokeTrial), AddError> {
     let mut bench = Bench::new(config)?;
     let id = bench.scene.add_body(alone(body))?;
     let own = surface.body;
     surface.body = own.map(|_| id);
     let size_m = [surface.width_m, surface.height_m];
-    let mut touchings = Vec::new();
-    for (place, probe) in probes {
-        let probe = place.map(|_| bench.scene.add_probe(*probe)).transpose()?;
-        touchings.push(probe);
-    }
-    let surface = bench.scene.add_surface(surface)?;
-    let mut trials = Vec::new();
-    for probe in touchings {
-        let holder = own.is_none().then_some(id);
-        let touching = Touching { probe, holder, ..Touching::on(surface) };
-        let channels = kinds(&config.actuators).len();
-        let both: Vec<[f64; 2]> =
-            (0..channels).map(|channel| reference(&mut bench, touching, channel, size_m)).collect();
-        let fast = FORCES_N.map(|force_n| {
-            let fast = Motion {
-                force_n,
-                speed_m_s: FAST_M_S,
-                jumps: FAST_JUMPS,
-                length_s: FAST_S,
-                pause_s: FAST_PAUSE_S,
-                ..along(WAYS[1])
-            };
-            bench.stroke(touching, 0, size_m, &fast).heard.sqrt()
-        });
-        trials.push(StrokeTrial {
-            heard: both.iter().fold(0.0, |most, [heard, _]| f64::max(most, *heard)),
-            felt: both.iter().map(|[_, felt]| *felt).collect(),
-            fast,
-        });
-    }
+    let probe = probe.map(|probe| bench.scene.add_probe(probe)).transpose()?;
+    let holder = own.is_none().then_some(id);
+    let touching = Touching { probe, holder, ..Touching::on(bench.scene.add_surface(surface)?) };
+    let channels = kinds(&config.actuators).len();
+    let both: Vec<[f64; 2]> =
+        (0..channels).map(|channel| reference(&mut bench, touching, channel, size_m)).collect();
+    let fast = FORCES_N.map(|force_n| {
+        let fast = Motion {
+            force_n,
+            speed_m_s: FAST_M_S,
+            jumps: FAST_JUMPS,
+            length_s: FAST_S,
+            pause_s: FAST_PAUSE_S,
+            ..along(WAYS[1])
+        };
+        bench.stroke(touching, 0, size_m, &fast).heard.sqrt()
+    });
+    let trial = StrokeTrial {
+        heard: both.iter().fold(0.0, |most, [heard, _]| f64::max(most, *heard)),
+        felt: both.iter().map(|[_, felt]| *felt).collect(),
+        fast,
+    };
     let slot = bench.renderer.hand_over().surfaces.pop();
     let (_, slot) = slot.ok_or(AddError::Unknown("surface"))?;
-    let mut surface = slot.surface;
-    surface.body = own;
-    Ok((surface, trials))
+    Ok((Surface { body: own, ..slot.surface }, trial))
 }
 
 /// Rms heard and felt of the reference stroke in all directions.

@@ -6,6 +6,7 @@ mod picture;
 use crate::arguments::plain;
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
+use crate::paths::has_end;
 use crate::progress::Progress;
 use asperity::{Material, ModalModel};
 use asperity_shape::modes_file::ModesFile;
@@ -179,12 +180,17 @@ fn sheet(mesh: &Mesh, options: &Options) -> Result<SurfaceMesh, CliError> {
 
 fn in_words(report: &Report, options: &Options) -> String {
     format!(
-        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s{}",
+        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g{}, {} unknowns, {:.1} s{}",
         options.output.display(),
         report.modes,
         report.lowest_hz,
         report.highest_hz,
         1e3 * report.mass_kg,
+        if options.thickness.is_some() || has_end(&options.body, &["msh"]) {
+            ""
+        } else {
+            " if it is solid (--thickness M: a shell)"
+        },
         report.degrees_of_freedom,
         report.seconds,
         output::warned(&report.warnings)

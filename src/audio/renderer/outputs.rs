@@ -209,10 +209,19 @@ impl Renderer {
     /// Most by which peak limiters of channels and buses have turned down, dB; 0 for not at all.
     #[must_use]
     pub fn limiter_db(&self) -> f64 {
+        let [heard_db, felt_db] = self.limiters_db();
+        heard_db.max(felt_db)
+    }
+
+    /// The same of buses, and of channels.
+    fn limiters_db(&self) -> [f64; 2] {
+        let buses = self.buses.iter().filter_map(|bus| bus.limiter.as_ref());
         let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
-        let limiters = channels.chain(self.buses.iter().filter_map(|bus| bus.limiter.as_ref()));
-        let deepest = limiters.map(|(_, state)| state.deepest()).fold(1.0, f32::min);
-        (-20.0 * libm::log10(f64::from(deepest))).max(0.0)
+        let deepest_db = |gain: f32| (-20.0 * libm::log10(f64::from(gain))).max(0.0);
+        [
+            deepest_db(buses.map(|(_, state)| state.deepest()).fold(1.0, f32::min)),
+            deepest_db(channels.map(|(_, state)| state.deepest()).fold(1.0, f32::min)),
+        ]
     }
 
     /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.
@@ -284,7 +293,9 @@ impl Renderer {
 
     /// Reports to the game how loud each bus is.
     pub(super) fn show_levels(&mut self) {
-        self.counters.limiter_db.store(self.limiter_db() as u64, Relaxed);
+        let limiters_db = self.limiters_db().map(|db| db as u64);
+        self.counters.limiter_db.store(limiters_db[0].max(limiters_db[1]), Relaxed);
+        self.counters.limiters_db.iter().zip(limiters_db).for_each(|(cell, db)| cell.store(db, Relaxed));
         for (cell, bus) in self.counters.bus_peak_bits.iter().zip(&mut self.buses) {
             bus.meter.settle();
             cell.store(bus.meter.peak().to_bits(), Relaxed);

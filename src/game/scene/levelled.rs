@@ -13,6 +13,7 @@ use crate::model::levels::REFERENCE_SPEED_M_S;
 use crate::model::surface::Surface;
 use crate::resource::surface::SurfaceLevels;
 use asperity_dsp::micro_contact::Probe;
+use std::sync::atomic::Ordering::Relaxed;
 
 impl Scene {
     /// Finds the level of a surface before it is added, while a game loads for instance, so that
@@ -52,9 +53,11 @@ impl Scene {
     pub fn why_clipped(&mut self) -> Vec<ClipReason> {
         let stats = self.stats();
         let most = stats.bus_levels.iter().fold(0.0, |most, peak| f64::max(most, f64::from(*peak)));
-        let by_db = (stats.limiter_db as f64).max(20.0 * libm::log10(most.max(1e-9)));
+        let [heard_db, felt_db] = [0, 1].map(|of| self.counters.limiters_db[of].load(Relaxed) as f64);
+        let felt = (felt_db >= TOLD_DB).then_some(ClipReason::Felt { by_db: felt_db });
+        let by_db = heard_db.max(20.0 * libm::log10(most.max(1e-9)));
         if by_db < TOLD_DB {
-            return Vec::new();
+            return felt.into_iter().collect();
         }
         let blows: Vec<(BodyId, f64)> =
             self.strongest.blows_n_s.iter().map(|(id, n_s)| (*id, *n_s)).collect();
@@ -71,6 +74,7 @@ impl Scene {
             });
             because.push(strokes.unwrap_or(ClipReason::Sum { by_db }));
         }
+        because.extend(felt);
         because
     }
 
