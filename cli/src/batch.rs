@@ -145,7 +145,7 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
     }
     output::say_report(&report, options.json, || {
         format!(
-            "{} shards made, {} kept; {} of {} are there\nwrote {}{}",
+            "shards made: {}, kept: {}; {} of {} are there\nwrote {}{}",
             report.made,
             report.kept,
             report.shards_there,

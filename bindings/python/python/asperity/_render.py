@@ -45,7 +45,8 @@ def render(
 
     scene: a scene file's path, a `SceneFile`, a surface or several. contacts: a structured array (`asperity.contacts`), a list of
     dictionaries, a `.jsonl` path; None for the log that the scene file names. sr: sample rate, Hz. seed: of every random number.
-    kernel: "portable" gives the same bits on every processor. block: frames a block; the result does not depend on it. trace: keeps
+    kernel: "portable" gives the same bits on every processor. integrator: "exact-event" (the default), "semi-implicit-euler" (Hasti's),
+    "semi-implicit-euler-explicit" or "energy-conserving". block: frames a block; the result does not depend on it. trace: keeps
     `Take.trace`, a row a sample and contact. force: keeps `Take.force`, the 3-D force at 1 kHz, or at as many Hz as it says.
     progress: a bar, or a callable that is told the part done.
 

@@ -18,7 +18,7 @@ impl Written<'_> {
     pub(super) fn in_words(&self, folder: &Path) -> String {
         let report = &self.report;
         let mut text = format!(
-            "{} octaves, α {:.2} ± {:.2}; explains {:.0} % of the recorded levels, {:.1} dB beside them",
+            "{} octaves, α {:.2} ± {:.2} of the ground (a tip that rides it feels a steeper one); explains {:.0} % of the recorded levels, {:.1} dB beside them",
             report.octaves.len(),
             report.alpha,
             report.alpha_se,

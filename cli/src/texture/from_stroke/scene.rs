@@ -57,7 +57,7 @@ pub(super) fn scene(found: &StrokeSurface, probe: &NamedProbe, map: Option<&Map>
          width_m = {side_m:?}\nheight_m = {side_m:?}\nroughness = {:?}\nmicro_relief_m = {:?}\nouter_scale_m = {OUTER_SCALE_M:?}\n\
          micro_relief_octaves_db = [{}]\n{friction}{compliance}\n\
          [probe]\n{}\n\
-         [[actuator]]\noutput = \"acceleration\"\nfull_scale = 1.0\nhighpass_hz = 0.0\nlimit = false\n",
+         [[actuator]]\noutput = \"acceleration\"\nfull_scale = 1.0\nlowpass_hz = 0.0\nhighpass_hz = 0.0\nlimit = false\n",
         found.relief.roughness,
         found.relief.micro_relief_m,
         octaves.join(", "),
