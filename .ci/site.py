@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Pages of the site: docs/ and the README, with what lies outside of them linked in the repository.
 
-    site.py FOLDER            stages the pages for mdbook
-    site.py --check FOLDER    every link and anchor inside a built site leads somewhere
+    site.py FOLDER                    stages the pages for mdbook
+    site.py --check FOLDER            every link and anchor inside a built site leads somewhere
+    site.py --readme README FOLDER    FOLDER/README.md, whose links lead somewhere without the repository beside it
 """
 import re
 import shutil
@@ -20,8 +21,8 @@ def repository():
     return re.search(r'^repository = "(.*)"', (ROOT / "Cargo.toml").read_text(), re.M)[1]
 
 
-def staged(text, page):
-    """A page's text, whose links lead to pages of the site or to the repository."""
+def linked(text, page, inside):
+    """A page's text, whose links lead where `inside` says, and into the repository where it says nothing."""
 
     def moved(match):
         target, _, anchor = match[2].partition("#")
@@ -30,18 +31,34 @@ def staged(text, page):
         there = (page.parent / target).resolve()
         if not there.exists():
             sys.exit(f"error: {page.relative_to(ROOT)}: {target} is not there")
-        docs, anchor = ROOT / "docs", "#" + anchor if anchor else ""
-        if there == ROOT / "README.md":
-            there = docs / "README.md"
-        if there.is_relative_to(docs):
-            # A README becomes its folder's index.
-            there = there.with_name("index.md") if there.name == "README.md" else there
-            here = docs if page == ROOT / "README.md" else page.parent
-            return f"{match[1]}{Path(relpath(there, here)).as_posix()}{anchor}{match[3]}"
-        kind = "tree" if there.is_dir() else "blob"
-        return f"{match[1]}{repository()}/{kind}/main/{there.relative_to(ROOT)}{anchor}{match[3]}"
+        kind = "tree" if there.is_dir() else "raw" if there.suffix in (".png", ".svg") else "blob"
+        place = inside(there, target) or f"{repository()}/{kind}/main/{there.relative_to(ROOT).as_posix()}"
+        return f"{match[1]}{place}{'#' + anchor if anchor else ''}{match[3]}"
 
     return LINK.sub(moved, text)
+
+
+def staged(text, page):
+    """A page of the site: its links lead to other pages of it, or into the repository."""
+    docs = ROOT / "docs"
+    here = docs if page == ROOT / "README.md" else page.parent
+
+    def inside(there, _):
+        if there == ROOT / "README.md":
+            there = docs / "README.md"
+        if not there.is_relative_to(docs):
+            return None
+        # A README becomes its folder's index.
+        there = there.with_name("index.md") if there.name == "README.md" else there
+        return Path(relpath(there, here)).as_posix()
+
+    return linked(text, page, inside)
+
+
+def readme(page, folder):
+    """An archive's README: its links lead to what the archive holds, or into the repository."""
+    inside = lambda _, target: target if (folder / target).exists() and ".." not in target else None
+    (folder / "README.md").write_text(linked(page.read_text(), page, inside))
 
 
 def stage(folder):
@@ -86,5 +103,7 @@ def check(folder):
 
 if sys.argv[1] == "--check":
     check(Path(sys.argv[2]).resolve())
+elif sys.argv[1] == "--readme":
+    readme(Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve())
 else:
     stage(Path(sys.argv[1]).resolve())
