@@ -50,8 +50,8 @@ fn plane(on: BodyId) -> Surface {
     Surface::new(map, 0.2, 0.2).expect("a size that is accepted").body(on)
 }
 
-/// A body of a game: one of 48 kinds, or, once in fifty, of a size that no other has, whose level is
-/// found anew.
+/// A body of a game: one of 48 kinds, or, once in fifty, of a size that no other has, whose level
+/// is found anew.
 fn bell(rng: &mut Rng) -> Body {
     let stock = [Stock::Bar, Stock::Plate, Stock::Bowl][rng.next_u32() as usize % 3];
     let place = if rng.next_u32() % 50 == 0 { rng.uniform() } else { f64::from(rng.next_u32() % 16) / 16.0 };

@@ -163,8 +163,8 @@ impl Hand {
         }
     }
 
-    /// Remark on a circle, or a line to and fro, that comes round more than once: it sounds the same
-    /// each time.
+    /// Remark on a circle, or a line to and fro, that comes round more than once: it sounds the
+    /// same each time.
     pub fn repetition(&self) -> Option<String> {
         let reach_m = match self.path {
             Path::Circle => REACH * self.extent_m[0].min(self.extent_m[1]),

@@ -3,8 +3,8 @@
 
 use crate::simd::Vector;
 
-/// r = 2^(−(α − 1)/2) = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within
-/// 1e-6.
+/// r = 2^(−(α − 1)/2) = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser
+/// one, within 1e-6.
 pub(super) const OCTAVE_RATIO: [f32; 5] =
     [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
 

@@ -213,7 +213,7 @@ impl Renderer {
         heard_db.max(felt_db)
     }
 
-    /// The same of buses, and of channels.
+    /// Most by which limiters of buses, and of channels, have turned down, dB.
     fn limiters_db(&self) -> [f64; 2] {
         let buses = self.buses.iter().filter_map(|bus| bus.limiter.as_ref());
         let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
