@@ -25,6 +25,8 @@ const STROKE_S: f64 = 0.05;
 const GROWN: f64 = 1.4;
 /// Intensities below this are not told apart: −60 dB.
 const FAINT: f64 = 0.03;
+/// Share by which a straight piece may miss the power in its middle: 0.25 dB.
+const STRAIGHT: f64 = 0.03;
 
 /// A continuous event as it was read.
 struct Held {
@@ -261,24 +263,21 @@ impl Pieces {
                 sounding.iter().map(|h| inside(h, one_sided) * factor).collect()
             };
             let (from, to) = (ends(from_s, true), ends(to_s, false));
-            let mut cuts = parts(&from, &to);
-            // A ramp under a curve that moves falls twice as fast as either.
             let ramps = sounding.iter().any(|h| inside(h, from_s) != inside(h, to_s));
-            if ramps {
-                let halves: Vec<f64> = cuts.windows(2).map(|cut| 0.5 * (cut[0] + cut[1])).collect();
-                cuts.extend(halves);
-                cuts.sort_by(f64::total_cmp);
-            }
-            for part in cuts {
-                let time_s = if part == 1.0 { to_s } else { from_s + part * (to_s - from_s) };
+            let time_s = |part: f64| if part == 1.0 { to_s } else { from_s + part * (to_s - from_s) };
+            let power = |part: f64| -> f64 {
                 let levels = if ramps {
-                    ends(time_s, part < 1.0)
+                    ends(time_s(part), part < 1.0)
                 } else {
                     from.iter().zip(&to).map(|(a, b)| a + part * (b - a)).collect()
                 };
-                let power: f64 = levels.iter().map(|level| level * level).sum();
-                points.push((time_s, power.min(1.0)));
+                levels.iter().map(|level| level * level).sum()
+            };
+            let mut cuts = parts(&from, &to);
+            if ramps {
+                halve(&mut cuts, power);
             }
+            points.extend(cuts.into_iter().map(|part| (time_s(part), power(part).min(1.0))));
         }
         points.dedup_by(|b, a| a.0 == b.0 && a.1 == b.1);
         let mut out: Vec<AmplitudePoint> = points
@@ -348,6 +347,21 @@ pub(crate) fn parts(from: &[f64], to: &[f64]) -> Vec<f64> {
     parts.sort_by(f64::total_cmp);
     parts.dedup();
     parts
+}
+
+/// Halves what is not straight between two cuts: a ramp under a curve that moves.
+fn halve(cuts: &mut Vec<f64>, power: impl Fn(f64) -> f64) {
+    let mut next = 1;
+    while let (Some(&from), Some(&to)) = (cuts.get(next - 1), cuts.get(next)) {
+        let middle = 0.5 * (from + to);
+        let (here, straight) = (power(middle), 0.5 * (power(from) + power(to)));
+        let bends = (here - straight).abs() > STRAIGHT * here.max(FAINT * FAINT);
+        if to - from > 0.5 || (bends && to - from > 1e-3) {
+            cuts.insert(next, middle);
+        } else {
+            next += 1;
+        }
+    }
 }
 
 /// A number that may be missing.

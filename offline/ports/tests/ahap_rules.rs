@@ -107,6 +107,19 @@ fn a_release_under_a_falling_curve_is_weak_by_both() {
 }
 
 #[test]
+fn an_attack_under_a_falling_curve_swells_and_fades() {
+    let held = event("Continuous", 0.0, r#","EventDuration":0.4"#).replace(
+        r#""EventParameters":["#,
+        r#""EventParameters":[{"ParameterID":"AttackTime","ParameterValue":0.2},"#,
+    );
+    let clip = clip(&[held, curve("Intensity", 0.0, &[(0.0, 1.0), (0.2, 0.0)])]);
+    for part in [0.05, 0.2, 0.4, 0.45, 0.6, 0.8, 0.95] {
+        let (level, expected) = (at(&clip, 0.2 * part).0, ((1.0 - part) * part).powi(2));
+        assert!(20.0 * (level / expected).log10().abs() < 0.5, "{part}: {level} {expected}");
+    }
+}
+
+#[test]
 fn trailing_commas_and_comments_of_the_vendors_samples_are_read() {
     let text = r#"{"Version": 1.0, // as shipped
         "Pattern": [{"Event": {"Time": 0.0, "EventType": "HapticTransient", "EventParameters": [],},},],}"#;

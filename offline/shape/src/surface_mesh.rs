@@ -70,9 +70,12 @@ impl SurfaceMesh {
             let what = format!("has {} triangles", self.triangles.len());
             return Err(ShapeError::new("", what, format!("at most {MOST_TRIANGLES}")));
         }
+        let side_m = longest_side(&self.points);
         let mut repaired = self.repaired(cracks, remarks);
         if repaired.triangles.is_empty() {
-            return Err(ShapeError::new("", "every triangle is without area", "give the surface of a body"));
+            let what =
+                format!("every triangle is lower than a millionth of the longest side, {side_m:.1e} m");
+            return Err(ShapeError::new("", what, "give the surface of a body"));
         }
         repaired.turn_alike(remarks);
         Ok(repaired)

@@ -96,6 +96,8 @@ fn what_is_no_body_is_refused_with_the_reason() {
     nan.points[3][1] = f64::NAN;
     let mut large = clean();
     large.points.iter_mut().flatten().for_each(|x| *x *= 1e7);
+    let mut far = clean();
+    far.points[0][0] = -3e38;
     let paper = common::box_surface([0.2, 0.15, 5e-5]);
     let flat = flipped(common::box_surface([0.2, 0.15, 0.0]), |_| false);
     // An engine of 66 parts was refused for its walls alone.
@@ -103,6 +105,7 @@ fn what_is_no_body_is_refused_with_the_reason() {
     for (mesh, reason) in [
         (nan, "not a number"),
         (large, "metres"),
+        (far, "longest side, 3.0e38 m"),
         (paper, "too thin"),
         (sheets, "2 separate pieces"),
         (flat, "--thickness"),

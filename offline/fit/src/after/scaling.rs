@@ -131,6 +131,7 @@ fn moved(modes: &[Mode], size: f64, factor: impl Fn(f64, f64) -> f64) -> Vec<Mod
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity_dsp::diffuse::DiffusePart;
 
     fn body(law: DampingLaw) -> Vec<Mode> {
         (1..40)
@@ -173,5 +174,20 @@ mod tests {
         let law = DampingLaw::of(&wooden).unwrap();
         assert!((law.alpha_per_s / 60.0 - 1.0).abs() < 0.06 && (law.beta_s / 2e-6 - 1.0).abs() < 0.06);
         assert!(DampingLaw::of(&[]).is_none());
+    }
+
+    #[test]
+    fn bands_ring_as_long_as_the_other_material_lets_them() {
+        let wood = DampingLaw { alpha_per_s: 60.0, beta_s: 2e-6 };
+        let part = DiffusePart { energy: 1e-3, decay_per_s: 3.0 * CERAMIC.decay_per_s(2000.0) };
+        let mut bands = [DiffuseBand { centre_hz: 2000.0, width_hz: 300.0, parts: [part; 2] }];
+        rescale_bands(&mut bands, &body(CERAMIC), 0.5, Some(&wood));
+        let [DiffuseBand { centre_hz, width_hz, parts: [moved, _] }] = bands;
+        assert_eq!((centre_hz, width_hz), (4000.0, 600.0));
+        let ratio = moved.decay_per_s / (3.0 * wood.decay_per_s(4000.0));
+        assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+        // Amplitudes, √(4 d E), stay.
+        let squares = [part, moved].map(|part| part.energy * part.decay_per_s);
+        assert!((squares[1] / squares[0] - 1.0).abs() < 1e-12, "{squares:?}");
     }
 }
