@@ -9,6 +9,9 @@
 //! behind.
 
 use crate::error::CliError;
+use asperity_surface::image_io::save_gray16;
+use asperity_surface::picture::{ImageError, Problem};
+use asperity_surface::raster::Raster;
 use std::cell::RefCell;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -117,20 +120,17 @@ impl Outputs {
         fill(&mut file).and_then(|()| file.flush()).map_err(|error| CliError::write(path, &error))
     }
 
-    /// Lets a writer that insists on a path of its own write a file; it gets the temporary one.
+    /// Writes heights from 0 to 1 as a 16-bit grey PNG.
     ///
     /// # Errors
-    /// As [`Self::create`], and what the writer reports.
-    pub fn write_at(
-        &mut self,
-        path: &Path,
-        fill: impl FnOnce(&Path) -> Result<(), CliError>,
-    ) -> Result<(), CliError> {
+    /// As [`Self::write`], or when the heights are no picture.
+    pub fn write_gray16(&mut self, path: &Path, heights: &Raster) -> Result<(), CliError> {
         drop(self.create(path)?);
-        match self.pending.last() {
-            Some(pending) => fill(&pending.temporary),
-            None => Ok(()),
-        }
+        let temporary = self.pending.last().map_or(path, |pending| pending.temporary.as_path());
+        save_gray16(temporary, heights).map_err(|error| match error.problem {
+            Problem::Io(error) => CliError::write(path, &error),
+            problem => CliError::from_error(ImageError { file: path.to_owned(), problem }),
+        })
     }
 
     /// Gives every file its name.

@@ -32,6 +32,7 @@ fn a_verb_without_disk_space_says_so_and_leaves_nothing() {
     }
     fs::write(scene.path("ground.toml"), "[[surface]]\nname = \"a\"\nwidth_m = 0.1\nheight_m = 0.1\n")
         .unwrap();
+    asperity(scene.folder.path(), &["texture", "solid", "granite", "-o", "granite.png"]);
     for arguments in [
         &["render", "scene.toml", "-o", "out/take"][..],
         &["render", "scene.toml", "-o", "out/take", "--plot"],
@@ -45,12 +46,15 @@ fn a_verb_without_disk_space_says_so_and_leaves_nothing() {
         &["haptic", "tone.wav", "-o", "out/clip.hjif"],
         &["import", "draft.gltf", "-o", "out"],
         &["texture", "solid", "granite", "-o", "out/granite.png"],
+        &["texture", "from-photo", "granite.png", "-o", "out"],
+        &["texture", "metamer", "granite.png", "granite.png", "--iterations", "1", "-o", "out/like.png"],
         &["batch", "strokes.toml", "--shard", "1/4", "-o", "out"],
     ] {
         fs::create_dir_all(scene.path("out")).unwrap();
         let (status, _, err) = message(&without_room(scene.folder.path(), arguments));
         assert_eq!((status, err.lines().count()), (1, 1), "{arguments:?}: {err}");
         assert!(err.contains("cannot be written") && err.contains("; "), "{arguments:?}: {err}");
+        assert!(!err.contains(".part"), "{arguments:?}: {err}");
         // A data set keeps what the next run goes on from.
         let kept = |name: &str| arguments[0] == "batch" && [".manifest.lock", "spec.toml"].contains(&name);
         let entries = fs::read_dir(scene.path("out")).unwrap();

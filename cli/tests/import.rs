@@ -104,6 +104,16 @@ fn what_breaks_the_draft_is_refused_where_it_stands() {
         (&format!("{model}/decayRates"), json!(null), vec!["decayRates"]),
         ("/extensions/KHR_audio_rigid_bodies/acousticSurfaces/0/roughness", json!(-1), vec!["roughness"]),
         (
+            "/extensions/KHR_audio_rigid_bodies/acousticMaterials/0/poissonRatio",
+            json!(5.19),
+            vec!["scene.gltf", "Bell-0", "poisson", "5.19 is refused", "0.5"],
+        ),
+        (
+            "/extensions/KHR_audio_rigid_bodies/acousticMaterials/0/youngsModulus",
+            json!(-1),
+            vec!["scene.gltf", "Bell-0", "young_pa"],
+        ),
+        (
             "/extensions/KHR_audio_rigid_bodies/acousticSurfaces/0/spectralSlope",
             json!("steep"),
             vec!["spectralSlope"],

@@ -10,6 +10,7 @@ use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::unwrap::UnwrapOptions;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine, Striker};
+use asperity::files::scene_file::SceneFile;
 use asperity_plot::pixels;
 use asperity_shape::ShapeError;
 use asperity_shape::gltf::{Document, Placed};
@@ -18,7 +19,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The extension, as of the draft's commit 2ea03a8 of 2026-08-22.
 pub const EXTENSION: &str = "KHR_audio_rigid_bodies";
@@ -101,17 +102,21 @@ struct Unwrap {
 /// Runs the verb.
 ///
 /// # Errors
-/// When the document is no glTF, its extension breaks the draft, or a file cannot be written.
+/// When the document is no glTF, its extension breaks the draft, a scene takes none of its numbers,
+/// or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let document = Document::read(&options.document)?;
     output::reads(document.files());
     let mut scene = Scene::of(&document, options)?;
+    let text = scene.toml();
+    SceneFile::parse(&text, Path::new("scene.toml"))
+        .map_err(|error| CliError::from(error).within(options.document.display()))?;
     ensure_folder(&options.output)?;
     let mut outputs = Outputs::new();
     for (name, bytes) in &scene.files {
         outputs.write(&options.output.join(name), bytes)?;
     }
-    outputs.write(&options.output.join("scene.toml"), scene.toml().as_bytes())?;
+    outputs.write(&options.output.join("scene.toml"), text.as_bytes())?;
     outputs.write(&options.output.join("contacts.jsonl"), scene.contacts().as_bytes())?;
     let report = Report {
         bodies: scene.bodies.len(),

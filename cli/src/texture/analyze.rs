@@ -2,7 +2,7 @@
 
 use crate::arguments::{Words, one_of};
 use crate::error::CliError;
-use crate::output;
+use crate::output::{self, Outputs};
 use crate::progress::Progress;
 use asperity_pictures::fractal_dimension::{
     COLOUR_LIMIT, Condition, FractalDimension, colour_fraction, fractal_dimension,
@@ -11,7 +11,7 @@ use asperity_pictures::symmetry::{
     Distortion, DocumentSearch, Frieze, Lattice, averaged_cell, document_lattice, find_frieze, find_lattice,
     separate, wallpaper_group,
 };
-use asperity_surface::image_io::{Channel, load_channel, save_gray16};
+use asperity_surface::image_io::{Channel, load_channel};
 use asperity_surface::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -174,7 +174,9 @@ fn write_primitive(
     };
     let (low, high) = primitive.range();
     let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
-    save_gray16(file, &primitive.map(|v| (v - low) * scale)).map_err(CliError::from_error)
+    let mut outputs = Outputs::new();
+    outputs.write_gray16(file, &primitive.map(|v| (v - low) * scale))?;
+    outputs.commit().map(drop)
 }
 
 /// Group and figures of a pattern.

@@ -8,7 +8,7 @@ use crate::output::{self, Outputs};
 use asperity_pictures::from_photo::TEXEL_M;
 use asperity_pictures::gradient_field::Derivative;
 use asperity_pictures::normal_map::{Green, NormalMapOptions, heights_from_normals};
-use asperity_surface::image_io::{self, Channel};
+use asperity_surface::image_io::Channel;
 use asperity_surface::raster::Raster;
 use clap::Args;
 use serde::Serialize;
@@ -122,9 +122,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let relief_per_px = high - low;
     let scaled = found.height_px.map(|z| if relief_per_px > 0.0 { (z - low) / relief_per_px } else { 0.5 });
     let mut outputs = Outputs::new();
-    outputs.write_at(&options.output, |path| {
-        image_io::save_gray16(path, &scaled).map_err(CliError::from_error)
-    })?;
+    outputs.write_gray16(&options.output, &scaled)?;
     let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
     let told_texel_m = width_m.map(|width_m| width_m / scaled.width as f64);
     let texel_m = told_texel_m.or(options.object.stl.as_ref().map(|_| TEXEL_M));

@@ -18,7 +18,6 @@ use asperity_pictures::from_photo::{
 use asperity_pictures::light::Light;
 use asperity_pictures::photograph::{Photograph, load_reduced_photograph};
 use asperity_pictures::shape_from_shading::{Method, STEPS};
-use asperity_surface::image_io;
 use asperity_surface::raster::Raster;
 use clap::Args;
 pub use report::Report;
@@ -189,9 +188,7 @@ fn write(
     let mut files = Vec::new();
     let mut picture_file = |outputs: &mut Outputs, name: &str, raster: &Raster| {
         files.push(name.to_owned());
-        outputs.write_at(&folder.join(name), |path| {
-            image_io::save_gray16(path, raster).map_err(CliError::from_error)
-        })
+        outputs.write_gray16(&folder.join(name), raster)
     };
     picture_file(&mut outputs, "displacement.png", &surface.displacement)?;
     picture_file(&mut outputs, "roughness.png", &surface.roughness)?;
@@ -240,6 +237,7 @@ mod tests {
     use super::*;
     use crate::arguments::plain;
     use crate::render;
+    use asperity_surface::image_io;
     use std::path::Path;
 
     #[test]

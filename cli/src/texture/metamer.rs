@@ -11,7 +11,6 @@ use asperity_pictures::borders::Borders;
 use asperity_pictures::from_photo::TEXEL_M;
 use asperity_pictures::metamer::{self as core, Metamer, MetamerOptions, Method, Statistics};
 use asperity_pictures::pyramid::{Kind, Subband};
-use asperity_surface::image_io;
 use asperity_surface::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -164,8 +163,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let seconds = start.elapsed().as_secs_f64();
     let mut outputs = Outputs::new();
     let grey = file.grey(&made.image);
-    outputs
-        .write_at(&options.output, |path| image_io::save_gray16(path, &grey).map_err(CliError::from_error))?;
+    outputs.write_gray16(&options.output, &grey)?;
     let texel_m = texel_m(options, original.width);
     let heights_m = made.image.map(|height| 1e-3 * options.relief_mm * height);
     options.object.write(&mut outputs, &heights_m, texel_m)?;
