@@ -84,6 +84,18 @@ fn three_axes_and_columns_are_folded_and_give_friction() {
 }
 
 #[test]
+fn a_force_in_grams_is_not_read_without_a_remark() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    csv(&folder.join("stroke.csv"), "a,f", vibration(3.0, 90.0).iter().map(|a| vec![*a, 150.0]));
+    let warnings = |force: &str| {
+        read(folder, &["--rate", "4000", "--speed", "0.12", "--force", force])["warnings"].to_string()
+    };
+    assert!(warnings("f").contains("150 N"), "{}", warnings("f"));
+    assert!(!warnings("1.5").contains("102 g"));
+}
+
+#[test]
 fn tables_of_other_programs_are_read_as_the_same_stroke() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

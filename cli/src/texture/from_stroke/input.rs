@@ -18,6 +18,8 @@ const G_M_S2: f64 = 9.806_65;
 const HIT_N_S: f64 = 0.01;
 /// Longest recording, s.
 const LONGEST_S: f64 = 600.0;
+/// Pressing force above which numbers are more likely grams, N.
+const HARDEST_N: f64 = 50.0;
 /// Axes that one recording may have.
 const MOST_AXES: usize = 3;
 
@@ -116,6 +118,12 @@ pub(super) fn strokes(options: &Options) -> Result<Recorded, CliError> {
             recorded
                 .remarks
                 .push("the mean of the three axes is 1, as gravity's is in g (--unit g)".to_owned());
+        }
+        let mean_n = force.mean(0, axes[0].len());
+        if mean_n > HARDEST_N {
+            recorded
+                .remarks
+                .push(format!("a mean force of {mean_n:.0} N: forces are read as N (1 N presses as 102 g)"));
         }
         let unit = match options.unit {
             Some(Unit::G) => G_M_S2,
