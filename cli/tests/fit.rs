@@ -118,7 +118,8 @@ fn one_command_writes_modes_table_residual_resynthesis_and_picture() {
     let table = std::fs::read_to_string(folder.join("hit.csv")).unwrap();
     assert_eq!(table.lines().count(), 6);
     assert!(table.starts_with("frequency_hz,decay_per_s,amplitude,phase_rad"), "{table}");
-    assert!(std::fs::read_to_string(folder.join("hit.svg")).unwrap().ends_with("</svg>\n"));
+    let picture = std::fs::read_to_string(folder.join("hit.svg")).unwrap();
+    assert!(picture.contains("the struck body: modes and burst") && picture.ends_with("</svg>\n"));
     let samples = |name: &str| {
         let mut reader = hound::WavReader::open(folder.join(name)).unwrap();
         reader.samples::<f32>().map(|x| f64::from(x.unwrap())).collect::<Vec<_>>()

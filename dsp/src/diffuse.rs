@@ -37,7 +37,7 @@
 
 mod design;
 
-pub use design::{BAND_ERB, DiffuseBand, DiffuseGroup, DiffusePart, band_edges_hz};
+pub use design::{BAND_ERB, DiffuseBand, DiffuseGroup, DiffusePart, RISE_A_BURST, band_edges_hz};
 
 use crate::rng::hash_u32;
 use crate::simd::{Level, Set, at_level};

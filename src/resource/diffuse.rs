@@ -7,17 +7,12 @@ use crate::resource::bank::LONGEST_CONTACT_S;
 use crate::resource::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::diffuse::{
-    BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffusePart, DiffuseState,
+    BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffusePart, DiffuseState, RISE_A_BURST,
 };
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::simd::Level;
 use asperity_surface::height_field::MAX_BLOCK;
 
-/// Time constant with which the bands rise after a strike, in lengths of the burst that it plays.
-/// At 0.375, where both have half of the power halfway through its fade, a lid whose sound swells
-/// was 7.8 dB too loud in its first 5 ms; now 72 household recordings are at most 1.4 dB too loud
-/// there, and their levels stay.
-const RISE: f64 = 1.1;
 /// Rise time without a burst, s: nothing rises then.
 const NO_RISE_S: f64 = 0.01;
 
@@ -52,7 +47,7 @@ impl DiffuseSeat {
         if bands.is_empty() {
             return Ok(None);
         }
-        let rise_s = burst.map_or(NO_RISE_S, |burst| (RISE * burst.seconds()).max(1e-3));
+        let rise_s = burst.map_or(NO_RISE_S, |burst| (RISE_A_BURST * burst.seconds()).max(1e-3));
         let groups = bands.chunks(BANDS).zip(seed..);
         let groups = groups.map(|(bands, seed)| DiffuseGroup::new(bands, rise_s, seed, sample_rate_hz));
         let groups = groups.collect::<Result<Box<[_]>, _>>()?;

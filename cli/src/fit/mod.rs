@@ -68,6 +68,9 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
     let mut bands = if options.bands { fit.diffuse() } else { Vec::new() };
+    if let Some(path) = &options.plot {
+        outputs.write(path, picture::svg(&recording, &fit, burst.as_ref(), &bands).as_bytes())?;
+    }
     rescale_bands(&mut bands, &plain, options.scale_size.unwrap_or(1.0), law.as_ref());
     let (mut places, mut several) = (None, None);
     if options.others().next().is_none() {
@@ -91,9 +94,6 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     }
     if let Some(path) = &options.resynthesis {
         write_samples(&mut outputs, path, &fit.resynthesis(), fit.sample_rate_hz)?;
-    }
-    if let Some(path) = &options.plot {
-        outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
     }
     outputs.commit()?;
     let mut report = Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64());

@@ -1,7 +1,12 @@
-//! The picture of a fit: recording, what the engine plays, and what is left, each as a wave and as
-//! a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
+//! The picture of a fit: recording, the struck body with its burst and bands of noise, and what the
+//! modes leave, each as a wave and as a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
 //! is right or wrong.
 
+use asperity_dsp::diffuse::{
+    BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffuseState, RISE_A_BURST,
+};
+use asperity_dsp::simd::Level;
+use asperity_fit::body::residual::Burst;
 use asperity_fit::{Fit, Recording};
 use asperity_plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, decibels, palette, spectrogram};
 
@@ -11,8 +16,30 @@ const DRAWN: usize = 80;
 const BEFORE_S: f64 = 0.002;
 const ATTACK_S: f64 = 0.03;
 
+/// The recorded strike as a body plays it: modes, burst, and bands of noise with a seed of their
+/// own.
+fn played(fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> Vec<f64> {
+    let mut sound = fit.resynthesis();
+    let after = &mut sound[fit.onset_sample..];
+    if let Some(burst) = burst {
+        after.iter_mut().zip(&burst.samples).for_each(|(sum, x)| *sum += x);
+    }
+    let burst_s = burst.map_or(0.0, |burst| burst.samples.len() as f64 / burst.sample_rate_hz);
+    let (rise_s, rate) = ((RISE_A_BURST * burst_s).max(1e-3), fit.sample_rate_hz);
+    let groups = bands.chunks(BANDS).zip(0..);
+    let groups: Vec<_> =
+        groups.flat_map(|(bands, seed)| DiffuseGroup::new(bands, rise_s, seed, rate)).collect();
+    let states = vec![DiffuseState::REST; groups.len()];
+    let (mut all, mut noise) = (vec![0.0; after.len()], vec![0.0; after.len()]);
+    all.iter_mut().take(1).for_each(|x| *x = 1.0);
+    let rising: &[f32] = if burst.is_some() { &all } else { &[] };
+    DiffuseBank::new(Level::detect(), groups, states).render(DiffuseInput { all: &all, rising }, &mut noise);
+    after.iter_mut().zip(noise).for_each(|(sum, x)| *sum += f64::from(x));
+    sound
+}
+
 /// The picture as SVG.
-pub fn svg(recording: &Recording, fit: &Fit) -> String {
+pub fn svg(recording: &Recording, fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> String {
     let rate = fit.sample_rate_hz;
     let start_s = recording.starts_at_s;
     let mut figure = Figure::new(format!("{}: {} modes", fit.source, fit.modes.len())).subtitle(format!(
@@ -24,11 +51,17 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));
     }
-    let struck = fit.resynthesis();
+    let struck = played(fit, burst, bands);
+    let plays = match (burst, bands) {
+        (None, []) => "the struck body: its modes",
+        (Some(_), []) => "the struck body: modes and burst",
+        (None, _) => "the struck body: modes and bands of noise",
+        (Some(_), _) => "the struck body: modes, burst and bands of noise",
+    };
     let parts: [(&str, &str, &[f64], bool); 3] = [
         ("recording", "recording, its modes drawn as long as they ring (60 dB)", &recording.samples, true),
-        ("struck body", "the struck body: what the engine plays", &struck, false),
-        ("what is left", "what is left", &fit.residual.samples, false),
+        ("struck body", plays, &struck, false),
+        ("what the modes leave", "what the modes leave", &fit.residual.samples, false),
     ];
     let from = fit.onset_sample.saturating_sub((BEFORE_S * rate) as usize);
     let until = (fit.onset_sample + (ATTACK_S * rate) as usize).min(struck.len());

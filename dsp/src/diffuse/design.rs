@@ -32,6 +32,12 @@ pub struct DiffuseBand {
 /// hearing (Glasberg and Moore 1990): 32 of them, two groups, reach from 60 Hz to 18 kHz.
 pub const BAND_ERB: f64 = 1.25;
 
+/// Time constant with which bands rise after a strike, in lengths of the burst that it plays. At
+/// 0.375, where both have half of the power halfway through its fade, a lid whose sound swells was
+/// 7.8 dB too loud in its first 5 ms; now 72 household recordings are at most 1.4 dB too loud there,
+/// and their levels stay.
+pub const RISE_A_BURST: f64 = 1.1;
+
 /// Edges of bands of [`BAND_ERB`] from one frequency to another.
 pub fn band_edges_hz(low_hz: f64, high_hz: f64) -> impl Iterator<Item = f64> {
     let number = |hz: f64| 21.4 * libm::log10(1.0 + 4.37e-3 * hz);
