@@ -21,7 +21,9 @@ const LONGEST_STEP_S: f64 = 0.025;
 /// Steps of one game differ by a smaller factor.
 const ALIKE: f64 = 1.6;
 /// Contacts, and bodies, kept at most beside those of the last [`KEPT_S`].
-const MOST_KEPT: usize = 1024;
+/// Less than half of the 1,792 that a table of 2,048 places holds: with more it would double once
+/// its places have been used up by what is gone.
+const MOST_KEPT: usize = 800;
 /// Time for which a contact or body without a report is kept where there are many, s.
 const KEPT_S: f64 = 1.0;
 
