@@ -23,7 +23,7 @@ use binary::Binary;
 use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Write bodies with mode shapes as a glTF document (the draft KHR_audio_rigid_bodies)
 #[derive(Debug, Args)]
