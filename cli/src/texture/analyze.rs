@@ -313,7 +313,7 @@ mod tests {
     fn saved(picture: &Raster) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.png");
-        save_gray16(&path, picture).unwrap();
+        asperity_surface::image_io::save_gray16(&path, picture).unwrap();
         (folder, path)
     }
 
