@@ -1,6 +1,6 @@
 //! The picture of a fit: recording, the struck body with its burst and bands of noise, and what the
-//! modes leave, each as a wave and as a spectrogram, all on the recording's scale; above them the first milliseconds, where a strike
-//! is right or wrong.
+//! modes leave, each as a wave and as a spectrogram, all on the recording's scale; above them the
+//! first milliseconds, where a strike is right or wrong.
 
 use asperity_dsp::diffuse::{
     BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffuseState, RISE_A_BURST,

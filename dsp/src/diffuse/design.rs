@@ -34,8 +34,8 @@ pub const BAND_ERB: f64 = 1.25;
 
 /// Time constant with which bands rise after a strike, in lengths of the burst that it plays. At
 /// 0.375, where both have half of the power halfway through its fade, a lid whose sound swells was
-/// 7.8 dB too loud in its first 5 ms; now 72 household recordings are at most 1.4 dB too loud there,
-/// and their levels stay.
+/// 7.8 dB too loud in its first 5 ms; now 72 household recordings are at most 1.4 dB too loud
+/// there, and their levels stay.
 pub const RISE_A_BURST: f64 = 1.1;
 
 /// Edges of bands of [`BAND_ERB`] from one frequency to another.
