@@ -54,7 +54,8 @@ fn plane(on: BodyId) -> Surface {
 /// is found anew.
 fn bell(rng: &mut Rng) -> Body {
     let stock = [Stock::Bar, Stock::Plate, Stock::Bowl][rng.next_u32() as usize % 3];
-    let place = if rng.next_u32().is_multiple_of(50) { rng.uniform() } else { f64::from(rng.next_u32() % 16) / 16.0 };
+    let place =
+        if rng.next_u32().is_multiple_of(50) { rng.uniform() } else { f64::from(rng.next_u32() % 16) / 16.0 };
     Body::stock(stock, Material::STEEL, 0.08 + 0.1 * place).expect("a size that is accepted")
 }
 
