@@ -44,7 +44,7 @@ pub const MOST_TAIL_S: f64 = 20.0;
 #[derive(Debug, Clone, Args)]
 pub struct Options {
     /// Folder to fill. The loudest sample of the set lies 1 dB below full scale, unless the scene
-    /// gives a gain under [audio]
+    /// gives its audio a gain
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: PathBuf,
     /// Sample format: 16 or 24 bits, or 32-bit float
