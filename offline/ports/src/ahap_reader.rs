@@ -271,13 +271,15 @@ impl Pieces {
                 } else {
                     from.iter().zip(&to).map(|(a, b)| a + part * (b - a)).collect()
                 };
-                levels.iter().map(|level| level * level).sum()
+                levels.iter().map(|level| level * level).sum::<f64>().min(1.0)
             };
             let mut cuts = parts(&from, &to);
-            if ramps {
+            // Events that reach 1 together bend there, where none of them has a cut.
+            let reaches = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>() > 1.0;
+            if ramps || reaches(&from) != reaches(&to) {
                 halve(&mut cuts, power);
             }
-            points.extend(cuts.into_iter().map(|part| (time_s(part), power(part).min(1.0))));
+            points.extend(cuts.into_iter().map(|part| (time_s(part), power(part))));
         }
         points.dedup_by(|b, a| a.0 == b.0 && a.1 == b.1);
         let mut out: Vec<AmplitudePoint> = points

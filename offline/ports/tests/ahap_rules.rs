@@ -120,6 +120,27 @@ fn an_attack_under_a_falling_curve_swells_and_fades() {
 }
 
 #[test]
+fn events_that_are_full_together_stay_full_until_they_fade() {
+    let held = |intensity: &str| {
+        let held = event("Continuous", 0.0, r#","EventDuration":1"#);
+        held.replace(r#""HapticIntensity","ParameterValue":1"#, &format!(r#""HapticIntensity",{intensity}"#))
+    };
+    let fading = r#""ParameterValue":0.765},{"ParameterID":"Sustained","ParameterValue":0},{"ParameterID":"DecayTime","ParameterValue":0.543"#;
+    let decays = clip(&[held(r#""ParameterValue":0.741"#), held(fading)]);
+    let eight = held(r#""ParameterValue":0.8"#);
+    let curved = clip(&[eight.clone(), eight, curve("Intensity", 0.0, &[(0.0, 1.0), (1.0, 0.3)])]);
+    for step in 1..54 {
+        let time_s = 0.01 * f64::from(step);
+        let faded = 0.765 * (1.0 - time_s / 0.543);
+        let both = [0.741_f64.powi(2) + faded * faded, 1.28 * (1.0 - 0.7 * time_s).powi(2)];
+        for (clip, power) in [&decays, &curved].into_iter().zip(both) {
+            let (level, expected) = (at(clip, time_s).0, power.min(1.0));
+            assert!(20.0 * (level / expected).log10().abs() < 0.5, "{time_s}: {level} {expected}");
+        }
+    }
+}
+
+#[test]
 fn trailing_commas_and_comments_of_the_vendors_samples_are_read() {
     let text = r#"{"Version": 1.0, // as shipped
         "Pattern": [{"Event": {"Time": 0.0, "EventType": "HapticTransient", "EventParameters": [],},},],}"#;
