@@ -59,8 +59,8 @@ fn every_link_between_the_documents_leads_to_a_file() {
     }
 }
 
-/// Whether a path of a document leads somewhere: from the top, from `src`, or with `src` behind the
-/// crate's folder, its ending left out or not.
+/// Tests whether a path of a document leads somewhere: from the top, from `src`, or with `src`
+/// behind the crate's folder, its ending left out or not.
 fn is_there(path: &str) -> bool {
     let (first, rest) = path.split_once('/').unwrap_or((path, ""));
     let in_crate = format!("{first}/src/{rest}");

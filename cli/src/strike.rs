@@ -187,8 +187,8 @@ impl Body {
         if let Some(name) = options.material.and_then(|material| material.name()) {
             table.insert("material".into(), Value::String(name.to_owned()));
         } else {
-            let soft = "hit as if it were of PLA, which a hard striker dents (--material says what it is)";
-            remarks.assumed.push(soft.to_owned());
+            let assumed = "hit as if it were of PLA, which a hard striker dents (--material says what it is)";
+            remarks.assumed.push(assumed.to_owned());
         }
         let home = std::env::current_dir().unwrap_or_default();
         let table = sounds::with_absolute_paths(&table, &home);

@@ -9,7 +9,7 @@ pub struct Drawn {
     /// Ground of 8 m by 8 m.
     pub ground: Surface,
     pub ground_of: Material,
-    /// What rings under the ground, if anything does.
+    /// Body that rings under the ground, if any does.
     pub slab: Option<Body>,
     pub thing: Body,
     pub thing_of: Material,
