@@ -129,6 +129,13 @@ fn a_haptic_channel_beyond_full_scale_is_told_and_the_remedy_works() {
     let report = scene.report(&[]);
     let peak = report["haptic_peak"][0].as_f64().unwrap();
     assert!(peak <= 1.0 && peak > 0.9, "{peak}");
+    // So deep a limiter squeezes all that is felt into one level; some decibels are what it is for.
+    assert_says(&report["warnings"].to_string(), &["a limiter turned down by up to", "raise full_scale"]);
+    let by_db = report["limiter_db"].as_f64().unwrap();
+    let raised = 1e-8 * 10.0_f64.powf((by_db - 9.0) / 20.0);
+    scene.write("scene.toml", loud.replace("1e-8", &format!("{raised:e}\nlimit = true")));
+    let report = scene.report(&[]);
+    assert!(report["limiter_db"].as_f64().unwrap() > 6.0, "{report}");
     assert!(report["warnings"].as_array().unwrap().is_empty(), "{report}");
 }
 

@@ -1,8 +1,11 @@
 //! Losses and silence of a render, in the words of scene files and logs: what was refused or lost,
 //! and for each bus and channel that holds nothing its own reason.
 
+mod too_loud;
+
 use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine};
 use crate::files::scene_file::SceneFile;
+use crate::load::levels::Levels;
 use crate::offline::Render;
 use crate::{Excitation, SilenceReason, SurfaceId};
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,16 +26,22 @@ pub struct Rendered<'a> {
     pub log: &'a ContactLog,
     /// Their render.
     pub render: &'a Render,
-    /// m or m/s² at sample value 1 of each haptic channel.
-    pub full_scale: &'a [f64],
+    /// Levels in use.
+    pub levels: &'a Levels,
     /// Names of the surfaces.
     pub surfaces: &'a [(String, SurfaceId)],
 }
 
 impl Rendered<'_> {
-    /// Events that were refused, lost or contradict themselves: one line each, with what mends it.
+    /// What was refused, lost or too loud, and why an output is silence: one line each, with the
+    /// key or field that mends it.
     #[must_use]
-    pub fn losses(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
+        [self.losses(), self.too_loud(), self.silences()].concat()
+    }
+
+    /// Events that were refused, lost or contradict themselves: one line each, with what mends it.
+    fn losses(&self) -> Vec<String> {
         let backwards =
             |line: &&LogLine| matches!(line.event, LogEvent::Impact { speed_m_s, .. } if speed_m_s <= 0.0);
         let mut still = self.log.lines.iter().filter(backwards).peekable();
@@ -53,8 +62,7 @@ impl Rendered<'_> {
     }
 
     /// Buses and channels that hold nothing: one line each, with its own reason.
-    #[must_use]
-    pub fn silences(&self) -> Vec<String> {
+    fn silences(&self) -> Vec<String> {
         let (audio, haptic) = (self.silent_buses(), self.silent_channels());
         let mut sentences = Vec::new();
         match audio.as_slice() {
@@ -99,7 +107,7 @@ impl Rendered<'_> {
     }
 
     fn silent_channels(&self) -> Vec<usize> {
-        let channels = self.render.haptic.iter().zip(self.full_scale).enumerate();
+        let channels = self.render.haptic.iter().zip(&self.levels.full_scale).enumerate();
         let silent = channels.filter(|(_, (samples, scale))| f64::from(peak(samples)) * **scale < UNFELT);
         silent.map(|(index, _)| index).collect()
     }

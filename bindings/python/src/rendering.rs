@@ -40,8 +40,7 @@ struct Made {
     levels: Levels,
     surfaces: Vec<(String, asperity::SurfaceId)>,
     unread: Vec<String>,
-    lost: Vec<String>,
-    silences: Vec<String>,
+    warnings: Vec<String>,
     watch: Watch,
 }
 
@@ -113,16 +112,16 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     let surfaces: Vec<_> = engine.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let mut watch = Watch::new(pulse, wanted.trace, wanted.force_rate_hz, rate_hz);
     let options = Options { block_frames: wanted.block_frames, tail_s: file.tail_s, clock_s: None };
-    let Engine { scene, renderer, names, .. } = engine;
+    let Engine { scene, renderer, names, remarks, .. } = engine;
     let render = offline::render_tapped(scene, renderer, &log, &names, &options, &mut watch);
     if let Some(error) = watch.error() {
         return Err(error);
     }
     let render = render.map_err(at)?;
-    let full_scale = &levels.full_scale;
-    let rendered = Rendered { file: &file, log: &log, render: &render, full_scale, surfaces: &surfaces };
-    let (lost, silences) = (rendered.losses(), rendered.silences());
-    Ok(Made { render, kernel, levels, surfaces, unread, lost, silences, watch })
+    let rendered =
+        Rendered { file: &file, log: &log, render: &render, levels: &levels, surfaces: &surfaces };
+    let warnings = remarks.into_iter().chain(rendered.warnings()).collect();
+    Ok(Made { render, kernel, levels, surfaces, unread, warnings, watch })
 }
 
 /// The text of the log and its name in messages.
@@ -168,7 +167,7 @@ fn check_force_rate(force_rate_hz: Option<f64>, rate_hz: f64) -> PyResult<()> {
 }
 
 fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
-    let Made { render, kernel, levels, surfaces, unread, lost, silences, watch } = made;
+    let Made { render, kernel, levels, surfaces, unread, warnings, watch } = made;
     let result = PyDict::new(py);
     result.set_item("sr", render.sample_rate_hz)?;
     result.set_item("kernel", kernel)?;
@@ -177,8 +176,7 @@ fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("strike_gain", levels.strike_gain)?;
     result.set_item("limiter_db", render.limiter_db)?;
     result.set_item("stats", serde_json::to_string(&render.stats).map_err(refused)?)?;
-    result.set_item("lost", lost)?;
-    result.set_item("silences", silences)?;
+    result.set_item("warnings", warnings)?;
     result.set_item("unread", unread)?;
     let sand = PyDict::new(py);
     for after in render.sand {

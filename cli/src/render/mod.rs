@@ -4,7 +4,6 @@ pub mod picture;
 mod recorder;
 mod report;
 mod view;
-pub mod warning;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
@@ -204,12 +203,10 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         let pickup: Vec<&[f32]> = render.pickup.iter().map(Vec::as_slice).collect();
         wav::write(&mut outputs, &with_suffix(stem, "pickup.wav"), &pickup, rate_hz)?;
     }
-    let mut report = report(&render, kernel, levels, watching);
-    report.warnings = unread.iter().map(|place| read_past(place)).chain(remarks).collect();
-    let full_scale = report.full_scale.clone();
-    let rendered =
-        Rendered { file: &file, log: &log, render: &render, full_scale: &full_scale, surfaces: &names };
-    report.warnings.extend(warning::warnings(&rendered, &report));
+    let rendered = Rendered { file: &file, log: &log, render: &render, levels: &levels, surfaces: &names };
+    let warnings = unread.iter().map(|place| read_past(place)).chain(remarks).chain(rendered.warnings());
+    let warnings = warnings.collect();
+    let mut report = Report { warnings, ..report(&render, kernel, levels, watching) };
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
         let raster = &sand.picture.raster;
@@ -280,16 +277,12 @@ pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<S
     let surfaces: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let Engine { scene, renderer, names, .. } = built;
-    let (rate_hz, kernel) = (renderer.sample_rate_hz(), renderer.kernel());
-    check_length(&file, log.end_s() + file.tail_s, rate_hz)?;
+    check_length(&file, log.end_s() + file.tail_s, renderer.sample_rate_hz())?;
     let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
     let render = offline::render(scene, renderer, log, &names, &settings).map_err(CliError::from_error)?;
     check_finite(&render)?;
-    let report = report(&render, kernel, levels, Duration::ZERO);
-    let full_scale = report.full_scale.clone();
-    let rendered =
-        Rendered { file: &file, log, render: &render, full_scale: &full_scale, surfaces: &surfaces };
-    let warnings = warning::warnings(&rendered, &report);
+    let rendered = Rendered { file: &file, log, render: &render, levels: &levels, surfaces: &surfaces };
+    let warnings = rendered.warnings();
     Ok((render, warnings))
 }
 

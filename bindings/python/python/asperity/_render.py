@@ -25,7 +25,7 @@ _FORCE = ("x_n", "y_n", "z_n")
 
 
 class TouchWarning(UserWarning):
-    """What was refused, lost or left out of a render, what its reports contradict themselves in, and which output is silent, and why."""
+    """What was refused, lost or left out of a render, what its reports contradict themselves in, and which output is too loud or silent, and why."""
 
 
 def render(
@@ -51,7 +51,7 @@ def render(
     progress: a bar, or a callable that is told the part done.
 
     Runs without the GIL; Ctrl-C stops it. Raises ValueError or FileNotFoundError in the engine's words; warns with `TouchWarning` of
-    events that were refused or lost, of contacts that contradict themselves (velocity against uv), and of each output that is silent.
+    events that were refused or lost, of contacts that contradict themselves (velocity against uv), and of each output that is too loud or silent.
     """
     path, files = sources(scene)
     if contacts is None and isinstance(scene, SceneFile | _Surface | list | tuple):
@@ -80,6 +80,7 @@ def stroke(
     sr: float | None = None,
     seed: int | None = None,
     kernel: str | None = None,
+    integrator: str | None = None,
     trace: bool = False,
     force_output: bool | float = False,
     progress: Progress = None,
@@ -98,7 +99,7 @@ def stroke(
         speed=speed, force=force, duration=duration, extent=surface.extent, surface=surface.name, start=start,
         direction_deg=direction_deg,
     )  # fmt: skip
-    return render(scene, events, sr=sr, seed=seed, kernel=kernel, trace=trace, force=force_output, progress=progress)
+    return render(scene, events, sr=sr, seed=seed, kernel=kernel, integrator=integrator, trace=trace, force=force_output, progress=progress)
 
 
 def _log(contacts: ContactsLike) -> tuple[str, str]:
@@ -114,8 +115,7 @@ def _take(made: dict[str, Any], force_rate: float | None) -> Take:
     audio: npt.NDArray[np.float32] = made["audio"]
     stats = json.loads(made["stats"]) | {key: made[key] for key in ("kernel", "full_scale", "gain", "strike_gain", "limiter_db")}
     told = [f"{place}: is a key of the format, but this version does not act on it" for place in made["unread"]]
-    told += made["lost"] + made["silences"]
-    for warning in told:
+    for warning in told + made["warnings"]:
         warnings.warn(warning, TouchWarning, stacklevel=3)
     return Take(
         audio=audio[0] if len(audio) == 1 else audio,

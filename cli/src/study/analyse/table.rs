@@ -38,7 +38,8 @@ pub fn lines(report: &Report) -> String {
         lines.push(format!("correlation with the number in the name {}", interval(&report.trend)));
     }
     if !report.threshold.is_null() {
-        lines.push(format!("threshold {}", interval(&report.threshold)));
+        let at = 100.0 * report.threshold["at"].as_f64().unwrap_or(f64::NAN);
+        lines.push(format!("threshold at {at:.1} % right {}", interval(&report.threshold)));
     }
     if let Some(failed) = report.attention["failed"].as_object().filter(|failed| !failed.is_empty()) {
         lines.push(format!("checks of attention failed: {failed:?}"));
