@@ -1,6 +1,7 @@
-//! Doors of the program: tables of modes, glTF scenes, requests of `--tune`.
+//! Doors of the program: tables of modes and of strokes, glTF scenes, studies, requests of `--tune`.
 
 use crate::Door;
+use crate::columns::Columns;
 use crate::engine::{as_file, one_line};
 use crate::fit::import::{self as table, Missing};
 use crate::import;
@@ -13,11 +14,16 @@ use std::path::Path;
 #[path = "../../../cli/src/play/tune/document.rs"]
 #[allow(dead_code)]
 mod document;
+#[path = "../../../cli/src/study/spec.rs"]
+#[allow(dead_code)]
+mod spec;
 
 pub const DOORS: &[Door] = &[
     ("table-csv", |data| modes_of_table("csv", data)),
     ("table-json", |data| modes_of_table("json", data)),
+    ("stroke-csv", columns_of_a_stroke),
     ("gltf", scene_of_gltf),
+    ("study", study),
     ("tune", turned),
 ];
 
@@ -25,6 +31,29 @@ fn modes_of_table(ending: &str, data: &[u8]) {
     let missing = Missing { entry: None, base_hz: Some(200.0), t60_s: Some(0.5), table_rate_hz: 44_100.0 };
     as_file(ending, data, |path| match table::read(path, &missing) {
         Ok(read) => assert!(read.modes.iter().all(|mode| mode.frequency_hz.is_finite())),
+        Err(refused) => one_line(&refused),
+    });
+}
+
+/// A recorded stroke or sweep: as many numbers in every column, and its rate.
+fn columns_of_a_stroke(data: &[u8]) {
+    as_file("csv", data, |path| {
+        let columns = match Columns::read(path) {
+            Ok(columns) => columns,
+            Err(refused) => return one_line(&refused),
+        };
+        assert!(columns.values.iter().all(|values| values.len() == columns.values[0].len()));
+        let rate = columns.rate_hz();
+        rate.as_ref().err().into_iter().for_each(one_line);
+        assert!(rate.ok().flatten().is_none_or(|rate_hz| rate_hz > 0.0));
+        columns.column("acceleration_m_s2").err().iter().for_each(one_line);
+    });
+}
+
+/// A study, in which at least one thing is asked of at least one stimulus.
+fn study(data: &[u8]) {
+    as_file("toml", data, |path| match spec::Study::load(path) {
+        Ok(study) => assert!(study.trials > 0 && !study.names().is_empty()),
         Err(refused) => one_line(&refused),
     });
 }
