@@ -222,6 +222,17 @@ def test_each_output_that_is_silent_is_warned_of_with_its_own_reason(heights_m):
         asp.render(surface.on(asp.Body.stock("bar", 0.2, "steel")), rows)
 
 
+def test_outputs_beyond_full_scale_are_warned_of(heights_m):
+    surface = asp.Surface(heights_m, 0.14).on(asp.Body.stock("bar", 0.2, "steel"))
+    for options, words in [
+        ({"actuators": [{"full_scale": 1e-9}]}, "haptic channel 0 peaks at .* of full scale: raise full_scale"),
+        ({"audio": {"gain": 1e6}}, "the audio exceeds full scale"),
+        ({"audio": {"gain": 1e6, "limit": True}}, "a limiter turned down by up to"),
+    ]:
+        with pytest.warns(asp.TouchWarning, match=words):
+            asp.stroke(surface, duration=0.2, **options)
+
+
 def test_contacts_that_contradict_themselves_are_warned_of(heights_m):
     surface = asp.Surface(heights_m, 0.14).on(asp.Body.stock("bar", 0.2, "steel"))
     for extent, speed, unit in [(0.14, 80.0, "is velocity_m_s in mm/s"), (140.0, 0.1, "is velocity_m_s in mm/s")]:
