@@ -222,11 +222,6 @@ impl RenderPool {
                 surface.voices.push(share);
             }
         }
-        // The dearest last: it goes out first.
-        self.jobs.sort_unstable_by_key(|job| match job {
-            Task::Surface(surface) => (surface.voices.len(), usize::MAX - surface.index),
-            Task::Body(_) => (0, 0),
-        });
         self.send_all();
         self.pool.wake();
         true
@@ -255,7 +250,7 @@ impl RenderPool {
                     }
                     self.surfaces.push(surface);
                 }
-                Task::Body(body) => self.rung.push(body),
+                Task::Body(body) => self.keep_rung(body),
             }
         }
         self.rendered[index].take()
@@ -331,18 +326,28 @@ impl RenderPool {
         }
         while let Some(job) = self.pool.next(scratch) {
             if let Task::Body(share) = job {
-                self.rung.push(share);
+                self.keep_rung(share);
             }
         }
         for share in &mut self.rung {
             bodies[share.index].take_back(share.body.take());
         }
-        self.rung.sort_unstable_by_key(|share| share.index);
     }
 
-    /// Sends the jobs out, the last of them first.
+    /// Keeps a body that was rung in its place among the others.
+    fn keep_rung(&mut self, share: Box<BodyTask>) {
+        let place = self.rung.partition_point(|other| other.index < share.index);
+        self.rung.insert(place, share);
+    }
+
+    /// Sends the jobs out, the dearest first.
     fn send_all(&mut self) {
-        while let Some(job) = self.jobs.pop() {
+        let cost = |job: &Task| match job {
+            Task::Surface(surface) => (surface.voices.len(), usize::MAX - surface.index),
+            Task::Body(_) => (0, 0),
+        };
+        while let Some(dearest) = (0..self.jobs.len()).max_by_key(|job| cost(&self.jobs[*job])) {
+            let job = self.jobs.swap_remove(dearest);
             // There is room for all that there can be.
             if let Err(job) = self.pool.send(job) {
                 self.jobs.push(job);
