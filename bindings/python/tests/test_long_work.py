@@ -25,7 +25,7 @@ def scene_of_fingers():
         asp.Surface(heights_m, 0.14, name=f"s{i}").on(asp.Body.stock("plate", 0.1 + 0.01 * i, "ceramic", name=f"b{i}"))
         for i in range(FINGERS)
     ]
-    return asp.SceneFile(surfaces, audio={"gain": 1e-2}, actuators=[{"full_scale": 1e-4}])
+    return asp.SceneFile(surfaces, audio={"gain": 1e-2}, actuators=[{"full_scale": 1e-3}])
 
 
 def strokes(duration):

@@ -105,7 +105,7 @@ def test_contacts_come_back_from_a_log_as_they_were(tmp_path):
 def test_what_rolls_is_softer_than_what_slides_and_strikes_have_a_level_of_their_own(heights_m):
     surface = asp.Surface(heights_m, 0.14, name="top").on(asp.Body.stock("plate", 0.14, "glass"))
     rows = asp.contacts.stroke(speed=0.2, duration=0.5, extent=surface.extent, surface="top")
-    scene = asp.SceneFile(surface, actuators=[{"full_scale": 1e-4}])
+    scene = asp.SceneFile(surface, actuators=[{"full_scale": 1e-3}])
     slides = asp.render(scene, rows)
     rows["slip_m_s"], rows["roll_radius_m"] = 0.0, 0.008
     rolls = asp.render(scene, rows)
@@ -451,7 +451,7 @@ def test_a_clip_plays_on_its_channel_beside_nothing(tmp_path):
 def test_a_pickup_reads_a_body_in_its_unit(tmp_path):
     body = asp.Body.stock("plate", 0.14, "steel")
     pickup = {"name": "mic", "body": body.name, "factor": 1.0}
-    scene = asp.SceneFile(asp.Solid("granite").on(body), pickups=[pickup], audio={"gain": 1.0}, actuators=[{"full_scale": 1e-4}])
+    scene = asp.SceneFile(asp.Solid("granite").on(body), pickups=[pickup], audio={"gain": 0.1}, actuators=[{"full_scale": 1e-4}])
     blow = {"t": 0.0, "event": "impact", "body": body.name, "speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "striker": "steel"}
     take = asp.render(scene, [blow])
     assert take.pickup.shape == (1, take.audio.shape[-1]) and take.pickup.dtype == np.float32
