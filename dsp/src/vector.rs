@@ -66,3 +66,30 @@ pub fn bounds(points: &[Vec3]) -> Option<(Vec3, Vec3)> {
 pub fn longest_side(points: &[Vec3]) -> f64 {
     bounds(points).map_or(0.0, |(low, high)| (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn products_of_random_vectors_obey_lagranges_identity() {
+        assert_eq!(cross([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+        let mut rng = Rng::new(7);
+        for _ in 0..1000 {
+            let [a, b]: [Vec3; 2] = [0; 2].map(|_| [0; 3].map(|_| rng.normal()));
+            let (s, c) = (rng.normal(), cross(a, b));
+            let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
+            let sum = add_scaled(a, s, b);
+            for (found, wanted) in [
+                (dot(c, c) + ab * ab, aa * bb),
+                (dot(a, c), 0.0),
+                (dot(b, c), 0.0),
+                (dot(sum, sum), aa + s * (2.0 * ab + s * bb)),
+                (distance(sum, a), s.abs() * length(b)),
+            ] {
+                assert!((found - wanted).abs() < 1e-10, "{a:?}, {b:?}, {s}: {found} and not {wanted}");
+            }
+        }
+    }
+}

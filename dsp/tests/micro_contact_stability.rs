@@ -141,7 +141,7 @@ fn hostile_inputs_are_counted_and_forgotten_within_64_samples() {
         let mut calm = design.at_rest(0.0, 0.5);
         let reference = run(&design, &mut calm, &heights, &forces);
         for bad in hostile {
-            for in_force in [false, true] {
+            for (in_force, cut) in [(false, 1), (true, 1), (false, 64), (true, 64)] {
                 let (mut heights, mut forces) = (heights.clone(), forces.clone());
                 if in_force {
                     forces[1000] = bad
@@ -149,7 +149,8 @@ fn hostile_inputs_are_counted_and_forgotten_within_64_samples() {
                     heights[1000] = bad
                 }
                 let mut state = design.at_rest(0.0, 0.5);
-                let rows = run(&design, &mut state, &heights, &forces);
+                let blocks = heights.chunks(cut).zip(forces.chunks(cut));
+                let rows: Vec<_> = blocks.flat_map(|(h, f)| run(&design, &mut state, h, f)).collect();
                 assert!(rows.iter().all(is_finite), "{integrator:?} {bad}");
                 assert_eq!(
                     state.resets(),
@@ -273,6 +274,7 @@ fn the_builder_refuses_sub_steps_or_switches_and_says_so() {
     let switched = with(5e4, Integrator::SemiImplicitEuler, 8_000.0);
     assert_eq!(switched.integrator(), Integrator::EnergyConserving);
     assert!(switched.choice().to_string().contains("instead of semi-implicit-euler"));
+    assert_eq!([plain, stepped, switched].map(|design| design.choice().is_as_asked()), [true, false, false]);
     let exact = with(5e6, Integrator::ExactEvent, 44_100.0);
     assert_eq!((exact.integrator(), exact.latency_samples()), (Integrator::ExactEvent, 1));
     let stiff = with(6e6, Integrator::ExactEvent, 44_100.0);

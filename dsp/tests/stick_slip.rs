@@ -150,6 +150,20 @@ fn what_rings_under_a_resting_hand_never_grows_whatever_presses() {
     assert!(most <= 1.001, "{most}");
 }
 
+#[test]
+fn an_impulse_from_elsewhere_moves_a_free_mass_by_its_share() {
+    let (mass_kg, rate_hz) = (0.05_f64, 96_000.0);
+    let mut rows = oscillator(1.0, 0.0, rate_hz);
+    let (mut body, mut state) = (RubbedBody::new(&mut rows, rate_hz), RubState::default());
+    body.touch_at(&mut state, |_| mass_kg.powf(-0.5) as f32);
+    let friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.01 };
+    for (other_n_s, wanted_m_s) in [(0.002, 0.04), (0.0, 0.04), (-0.003, -0.02)] {
+        let now = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s };
+        let body_m_s = body.tick(&mut state, &friction, &now).body_m_s;
+        assert!((body_m_s - wanted_m_s).abs() < 1e-6, "{body_m_s} and not {wanted_m_s} m/s");
+    }
+}
+
 // scipy.integrate.solve_ivp with events, tests/independent/stick_slip.py: frequency, decay, mass,
 // normal force, sweep, μ_s, μ_k, u_s, and the mean period, s.
 const INTEGRATED: [[f64; 9]; 4] = [

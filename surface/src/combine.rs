@@ -233,3 +233,20 @@ impl HeightField for Crossfade {
 }
 
 crate::opaque::debug_by_name!(Sum, Scale, Crossfade);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid_materials::SolidMaterial;
+    use crate::solid_noise::SolidNoise;
+
+    #[test]
+    fn a_source_scaled_by_a_factor_reaches_as_many_times_as_far() {
+        let reach_m = |factor| {
+            let source = SolidNoise::new(SolidMaterial::Sand.parameters(), 11).unwrap();
+            Scale::new(Box::new(source), factor).unwrap().properties([1.0; 2]).reach_m
+        };
+        assert!(reach_m(1.0) > 0.0);
+        assert_eq!(reach_m(-3.0), 3.0 * reach_m(1.0));
+    }
+}

@@ -198,17 +198,10 @@ fn prefilter_strip(
         let start = causal.len();
         causal.extend(line[SETTLE - PAD..][strip.clone()].iter().map(|c| 6.0 * c));
         let (above, row) = causal.split_at_mut(start);
-        if above.is_empty() {
-            row.iter_mut().for_each(|out| *out += POLE * (*out / (1.0 - POLE)));
-        } else {
-            let above = &above[start - strip.len()..];
-            row.iter_mut().zip(above).for_each(|(out, above)| *out += POLE * above);
-        }
+        let above = &above[start.saturating_sub(strip.len())..];
+        row.iter_mut().zip(above).for_each(|(out, above)| *out += POLE * above);
     }
     let mut next = vec![0.0; strip.len()];
-    for (x, next) in next.iter_mut().enumerate() {
-        *next = causal[causal.len() - strip.len() + x] * POLE / (POLE - 1.0);
-    }
     for (i, causal) in causal.chunks_exact(strip.len()).enumerate().rev() {
         next.iter_mut().zip(causal).for_each(|(next, causal)| *next = POLE * (*next - causal));
         let y = i.wrapping_sub(SETTLE - PAD);
@@ -222,12 +215,12 @@ fn prefilter_strip(
 /// Coefficients of a row, a sixth of them, with [`SETTLE`] more on either side.
 fn prefilter_row(row: &[f64], value: impl Fn(f64) -> f64, columns: &[usize], line: &mut [f64]) {
     line.iter_mut().zip(columns).for_each(|(out, &i)| *out = value(row[i]));
-    let mut causal = line[0] / (1.0 - POLE);
+    let mut causal = 0.0;
     for out in line.iter_mut() {
         causal = *out + POLE * causal;
         *out = causal;
     }
-    let mut next = causal * POLE / (POLE - 1.0);
+    let mut next = 0.0;
     for out in line.iter_mut().rev() {
         next = POLE * (next - *out);
         *out = next;

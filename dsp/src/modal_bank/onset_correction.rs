@@ -33,8 +33,6 @@ const REACH: usize = 2 * KERNEL_LATENCY;
 const TERMS: usize = 9;
 /// Coefficients of the pulse's polynomial in x = 2 t/τ − 1.
 const POWERS: usize = 11;
-/// From this contact time on, samples, the inside of the pulse is one polynomial.
-const LONG: f64 = 8.0;
 
 /// Places and weights of Gauss's rule on −1…1: exact to degree 11.
 const GAUSS: [(f64, f64); 6] = [
@@ -162,16 +160,15 @@ impl OnsetCorrection {
             let Some(length) = part.samples_in(ring.len(), sample_rate_hz) else { continue };
             let peak = part.impulse_n_s / length;
             let mask = ring.len() - 1;
-            let inside = (length >= LONG).then(|| self.inside(length));
+            let inside = self.inside(length);
             let mut at = onset_sample.wrapping_add(1);
             let mut v = 1.0 - onset_offset.clamp(0.0, 1.0);
             while v < length + REACH as f64 {
-                let missing = match &inside {
-                    Some(polynomial) if v >= REACH as f64 && v <= length => {
-                        let x = 2.0 * (v - KERNEL_LATENCY as f64) / length - 1.0;
-                        polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c)
-                    }
-                    _ => self.near_an_edge(v, length),
+                let missing = if v >= REACH as f64 && v <= length {
+                    let x = 2.0 * (v - KERNEL_LATENCY as f64) / length - 1.0;
+                    inside.iter().rev().fold(0.0, |sum, c| sum * x + c)
+                } else {
+                    self.near_an_edge(v, length)
                 };
                 if let Some(y) = ring.get_mut(at as usize & mask) {
                     *y += (peak * missing) as f32;

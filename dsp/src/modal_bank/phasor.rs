@@ -182,6 +182,30 @@ mod tests {
     }
 
     #[test]
+    fn a_struck_group_sounds_as_its_modes_decaying_sines() {
+        let modes: [Mode; LANES] = from_fn(|l| Mode {
+            frequency_hz: 100.0 + 433.0 * l as f64,
+            decay_per_s: 5.0 + l as f64,
+            amplitude: 1.0 - 0.3 * l as f64,
+            phase_rad: 0.2 * l as f64,
+        });
+        let group = PhasorGroup::new(&modes, 16e3, &GroupOptions::default()).unwrap();
+        let (mut impulses, mut out) = ([0.0; 40], [LaneSums::default(); 40]);
+        impulses[0] = 1.0;
+        let inputs = [Input { impulses: &impulses, gains: &[] }];
+        group.run(Level::detect(), 0, &mut PhasorState::default(), &inputs, &mut out);
+        for (n, parts) in out.iter().enumerate() {
+            let t = n as f64 / 16e3;
+            let sine = |mode: &Mode| {
+                let angle = core::f64::consts::TAU * mode.frequency_hz * t + mode.phase_rad;
+                mode.amplitude * libm::exp(-mode.decay_per_s * t) * libm::sin(angle)
+            };
+            let wanted: f64 = modes.iter().map(sine).sum();
+            assert!((total(parts) - wanted).abs() < 1e-9, "{n}: {} and not {wanted}", total(parts));
+        }
+    }
+
+    #[test]
     fn every_processor_and_any_cut_has_the_same_bits() {
         let whole = outputs(Level::PORTABLE, 256);
         assert!(whole.iter().all(|x| x.is_finite()) && whole.iter().any(|x| x.abs() > 1.0));

@@ -130,3 +130,19 @@ fn room_m_s(own_speed_m_s: f64, now_m_s: f64) -> f64 {
 fn length([u, v]: [f64; 2]) -> f64 {
     libm::hypot(u, v)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::PathMode;
+    use super::*;
+
+    #[test]
+    fn a_still_contact_makes_up_noise_and_jumps_beyond_it() {
+        let design =
+            TrajectoryDesign::new(PathMode::Extrapolate, 30.0, 44_100.0, [f64::INFINITY; 2]).unwrap();
+        let speeds = Speeds { before_m_s: [0.0; 2], now_m_s: [0.0; 2], path_m_s: None };
+        let over = |away_m| CatchUp::default().over(&design, [away_m, 0.0], &speeds);
+        assert!(matches!(over(NOISE_M), Distance::MadeUp(_)));
+        assert!(matches!(over(1.01 * NOISE_M), Distance::TooFar));
+    }
+}

@@ -57,8 +57,7 @@ impl HeightField for Mask {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let [inside, outside, mask] = &mut self.sources;
         // The mask is a drawing of where, which no tip rides on.
-        let slopes = path.slopes;
-        let drawn = PathBlock { full_power_m2: None, tip_radius_m: 0.0, at_m: &[], slopes, ..*path };
+        let drawn = PathBlock { full_power_m2: None, tip_radius_m: 0.0, at_m: &[], ..*path };
         mask.sample(&drawn, &mut self.weight);
         inside.sample(path, &mut self.other);
         outside.sample(path, out);

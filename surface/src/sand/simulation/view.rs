@@ -57,3 +57,17 @@ impl SandSimulation {
         self.grid.height_m(cell(0), cell(1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sand::SandDesign;
+
+    #[test]
+    fn an_overview_of_untouched_sand_is_flat_at_zero() {
+        let sand = SandSimulation::new(&SandDesign::default()).unwrap();
+        let mut patch = Patch::flat();
+        sand.write_overview(&mut patch);
+        assert!(patch.heights_m.iter().all(|height_m| height_m.abs() < 1e-6));
+    }
+}
