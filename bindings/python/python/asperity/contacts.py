@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -101,7 +101,7 @@ def stroke(
     return rows
 
 
-def _event(row: np.void, fields: Sequence[str]) -> dict[str, Any]:
+def _event(row: Mapping[str, Any]) -> dict[str, Any]:
     kind = str(row["event"])
     event: dict[str, Any] = {"t": float(row["t"]), "event": kind}
     if kind != "impact":
@@ -110,12 +110,11 @@ def _event(row: np.void, fields: Sequence[str]) -> dict[str, Any]:
         return event
     # A move goes on with what its begin has told.
     told_once = ("surface", "actuator", "probe", "holder", "closing_m_s") if kind == "move" else ()
-    for name in fields:
+    for name, value in row.items():
         if name in told_once or name in ("t", "event", "contact"):
             continue
-        value = row[name]
         if name in _VECTORS:
-            if not np.isnan(value).all():
+            if not all(map(math.isnan, value)):
                 event[name] = [float(x) for x in value]
         elif name in _NUMBERS:
             if not math.isnan(value):
@@ -125,7 +124,7 @@ def _event(row: np.void, fields: Sequence[str]) -> dict[str, Any]:
                 event[name] = int(value)
         elif name in _NAMES and value != "":
             # A striker may be a table of constants.
-            event[name] = json.loads(str(value)) if str(value).startswith("{") else str(value)
+            event[name] = json.loads(value) if value.startswith("{") else value
     return event
 
 
@@ -137,7 +136,10 @@ def to_events(contacts: Contacts) -> list[dict[str, Any]]:
     unknown = set(fields) - set(dtype().names or ())
     if unknown:
         raise ValueError(f"contacts: unknown fields {', '.join(sorted(unknown))}; must be of asperity.contacts.dtype()")
-    return [_event(row, fields) for row in contacts.ravel()]
+    # By columns: numpy loses an interrupt that arrives while it reads a field of a row.
+    flat = contacts.ravel()
+    columns = [flat[name].tolist() for name in fields]
+    return [_event(dict(zip(fields, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
 def lines(events: Iterable[Mapping[str, Any]]) -> str:
@@ -183,12 +185,10 @@ def from_jsonl(text: str, name: str = "contacts") -> Contacts:
             raise ValueError(f"{name}:{number}: {event['event']} edits the scene; give the file itself to render")
         longest = max(longest, *(len(_named(event.get(key, ""))) for key in _NAMES))
     rows = empty(len(events), longest)
-    for row, event in zip(rows, events, strict=True):
-        for key, value in event.items():
-            if key in _NAMES:
-                row[key] = _named(value)
-            elif key in (rows.dtype.names or ()):
-                row[key] = value
+    columns = {name: rows[name] for name in rows.dtype.names or ()}
+    for place, event in enumerate(events):
+        for key in columns.keys() & event.keys():
+            columns[key][place] = _named(event[key]) if key in _NAMES else event[key]
     return rows
 
 
