@@ -427,6 +427,26 @@ fn whatever_is_recorded_gives_a_result_with_warnings_and_no_absurd_mode() {
 }
 
 #[test]
+fn a_body_that_the_engine_would_refuse_is_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut writer = hound::WavWriter::create(folder.join("loud.wav"), spec).unwrap();
+    for (n, x) in noisy(vec![0.0; 30_000], 1e18).into_iter().enumerate() {
+        writer.write_sample((x * (-5e-4 * n as f64).exp()) as f32).unwrap();
+    }
+    writer.finalize().unwrap();
+    let all = ["fit", "loud.wav", "-o", "x.modes.json", "--bands", "--max-modes", "4", "--plot", "x.svg"];
+    assert_refused(&asperity(folder, &all), &["x.svg", "energy", "is refused"]);
+    assert!(!folder.join("x.modes.json").exists() && !folder.join("x.svg").exists());
+}
+
+#[test]
 fn files_that_are_no_recordings_are_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -69,7 +69,9 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
     let mut bands = if options.bands { fit.diffuse() } else { Vec::new() };
     if let Some(path) = &options.plot {
-        outputs.write(path, picture::svg(&recording, &fit, burst.as_ref(), &bands).as_bytes())?;
+        let svg = picture::svg(&recording, &fit, burst.as_ref(), &bands);
+        let svg = svg.map_err(|refused| CliError::from_error(refused).within(path.display()))?;
+        outputs.write(path, svg.as_bytes())?;
     }
     rescale_bands(&mut bands, &plain, options.scale_size.unwrap_or(1.0), law.as_ref());
     let (mut places, mut several) = (None, None);
@@ -144,9 +146,6 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
     if let Some(path) = &options.csv {
         outputs.write(path, table::modes_to_csv(&table.modes).as_bytes())?;
     }
-    // What the engine would refuse is no body.
-    let model = asperity::ModalModel::new(table.modes.clone(), impulse_n_s);
-    model.and_then(|model| model.with_positions(table.positions.clone())).map_err(CliError::from_error)?;
     outputs.commit()?;
     Ok(TableReport::new(&table.modes, table.positions.len(), table.warnings))
 }

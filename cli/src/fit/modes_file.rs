@@ -112,9 +112,12 @@ fn details(fit: &Fit) -> Value {
     })
 }
 
-/// Writes a modes file.
+/// Writes a modes file; a body that the engine would refuse is none.
 pub fn write(outputs: &mut Outputs, path: &Path, body: &Body<'_>) -> Result<(), CliError> {
-    outputs.write_json(path, body)
+    let text = serde_json::to_string_pretty(body).map_err(CliError::from_error)?;
+    let refused = |error| CliError::from_error(error).within(path.display());
+    asperity::ModalModel::parse(&text).map_err(refused)?;
+    outputs.write(path, text.as_bytes())
 }
 
 fn detailed(mode: &Mode, fitted: &FittedMode) -> FileMode {

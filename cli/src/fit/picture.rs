@@ -2,6 +2,7 @@
 //! modes leave, each as a wave and as a spectrogram, all on the recording's scale; above them the
 //! first milliseconds, where a strike is right or wrong.
 
+use asperity_dsp::DesignError;
 use asperity_dsp::diffuse::{
     BANDS, DiffuseBand, DiffuseBank, DiffuseGroup, DiffuseInput, DiffuseState, RISE_A_BURST,
 };
@@ -18,7 +19,7 @@ const ATTACK_S: f64 = 0.03;
 
 /// The recorded strike as a body plays it: modes, burst, and bands of noise with a seed of their
 /// own.
-fn played(fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> Vec<f64> {
+fn played(fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> Result<Vec<f64>, DesignError> {
     let mut sound = fit.resynthesis();
     let after = &mut sound[fit.onset_sample..];
     if let Some(burst) = burst {
@@ -27,19 +28,27 @@ fn played(fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> Vec<f64> {
     let burst_s = burst.map_or(0.0, |burst| burst.samples.len() as f64 / burst.sample_rate_hz);
     let (rise_s, rate) = ((RISE_A_BURST * burst_s).max(1e-3), fit.sample_rate_hz);
     let groups = bands.chunks(BANDS).zip(0..);
-    let groups: Vec<_> =
-        groups.flat_map(|(bands, seed)| DiffuseGroup::new(bands, rise_s, seed, rate)).collect();
+    let groups = groups.map(|(bands, seed)| DiffuseGroup::new(bands, rise_s, seed, rate));
+    let groups = groups.collect::<Result<Vec<_>, _>>()?;
     let states = vec![DiffuseState::REST; groups.len()];
     let (mut all, mut noise) = (vec![0.0; after.len()], vec![0.0; after.len()]);
     all.iter_mut().take(1).for_each(|x| *x = 1.0);
     let rising: &[f32] = if burst.is_some() { &all } else { &[] };
     DiffuseBank::new(Level::detect(), groups, states).render(DiffuseInput { all: &all, rising }, &mut noise);
     after.iter_mut().zip(noise).for_each(|(sum, x)| *sum += f64::from(x));
-    sound
+    Ok(sound)
 }
 
 /// The picture as SVG.
-pub fn svg(recording: &Recording, fit: &Fit, burst: Option<&Burst>, bands: &[DiffuseBand]) -> String {
+///
+/// # Errors
+/// When a band cannot be played at the recording's rate.
+pub fn svg(
+    recording: &Recording,
+    fit: &Fit,
+    burst: Option<&Burst>,
+    bands: &[DiffuseBand],
+) -> Result<String, DesignError> {
     let rate = fit.sample_rate_hz;
     let start_s = recording.starts_at_s;
     let mut figure = Figure::new(format!("{}: {} modes", fit.source, fit.modes.len())).subtitle(format!(
@@ -51,7 +60,7 @@ pub fn svg(recording: &Recording, fit: &Fit, burst: Option<&Burst>, bands: &[Dif
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));
     }
-    let struck = played(fit, burst, bands);
+    let struck = played(fit, burst, bands)?;
     let plays = match (burst, bands) {
         (None, []) => "the struck body: its modes",
         (Some(_), []) => "the struck body: modes and burst",
@@ -101,5 +110,5 @@ pub fn svg(recording: &Recording, fit: &Fit, burst: Option<&Burst>, bands: &[Dif
         }
         figure.row(190.0, [panel]);
     }
-    figure.svg()
+    Ok(figure.svg())
 }

@@ -26,9 +26,11 @@ pub fn figure(figure: &Figure) -> String {
         TextStyle { size: 19.0, colour: INK, bold: true, ..Default::default() },
         &figure.title,
     );
-    for line in &figure.subtitle {
+    let small = TextStyle { size: 12.5, colour: FAINT, ..Default::default() };
+    let most = ((figure.width_px - 32.0) / (LETTER * small.size)) as usize;
+    for line in figure.subtitle.iter().flat_map(|line| wrapped(line, most)) {
         y += 19.0;
-        svg.text([16.0, y], TextStyle { size: 12.5, colour: FAINT, ..Default::default() }, line);
+        svg.text([16.0, y], small, &line);
     }
     y += 12.0;
     let any_bar = figure.rows.iter().flat_map(|row| &row.panels).any(|panel| bar_of(panel).is_some());
@@ -36,6 +38,18 @@ pub fn figure(figure: &Figure) -> String {
         y = draw_row(&mut svg, row, y, figure.width_px, any_bar);
     }
     svg.finish(figure.width_px, y + 8.0, &figure.title)
+}
+
+/// The words of `line` in lines of at most `most` letters.
+fn wrapped(line: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in line.split(' ') {
+        match lines.last_mut() {
+            Some(last) if last.chars().count() + word.chars().count() < most => *last += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Draws one row and returns where the next begins.

@@ -284,6 +284,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_long_line_below_the_title_is_broken_between_words() {
+        let warning = "second strike: strike 1 of 60, at 0.100 s, is analysed until the next; ".repeat(4);
+        let svg = Figure::new("hit.wav").subtitle(warning.trim()).svg();
+        let texts = svg.lines().filter(|line| line.starts_with("<text") && line.contains("12.5"));
+        let texts: Vec<&str> = texts.filter_map(|line| line.split(['>', '<']).nth(2)).collect();
+        assert!(texts.len() > 1 && texts.iter().all(|line| line.len() < 170), "{texts:?}");
+        assert_eq!(texts.join(" "), warning.trim());
+    }
+
+    #[test]
     fn reports_that_are_held_are_drawn_as_the_ramp_they_stand_for() {
         // 60 reports a second of a speed that grows by 1 a second, held at 6 kHz.
         let held: Vec<f64> = (0..6000).map(|n| (n / 100) as f64 / 60.0).collect();
