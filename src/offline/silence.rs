@@ -33,8 +33,8 @@ pub struct Rendered<'a> {
 }
 
 impl Rendered<'_> {
-    /// What was refused, lost or too loud, and why an output is silence: one line each, with the
-    /// key or field that mends it.
+    /// Events that were refused or lost, outputs that are too loud or silent: one line each, with
+    /// the key or field that mends it.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         [self.losses(), self.too_loud(), self.silences()].concat()

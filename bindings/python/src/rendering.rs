@@ -118,8 +118,7 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
         return Err(error);
     }
     let render = render.map_err(at)?;
-    let rendered =
-        Rendered { file: &file, log: &log, render: &render, levels: &levels, surfaces: &surfaces };
+    let rendered = Rendered { file: &file, log: &log, render: &render, levels: &levels, surfaces: &surfaces };
     let warnings = remarks.into_iter().chain(rendered.warnings()).collect();
     Ok(Made { render, kernel, levels, surfaces, unread, warnings, watch })
 }

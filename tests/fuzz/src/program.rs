@@ -1,4 +1,5 @@
-//! Doors of the program: tables of modes and of strokes, glTF scenes, studies, requests of `--tune`.
+//! Doors of the program: tables of modes and of strokes, glTF scenes, studies, requests of
+//! `--tune`.
 
 use crate::Door;
 use crate::columns::Columns;
