@@ -205,8 +205,10 @@ impl Body {
         }
         let count = self.model.position_count();
         if options.position >= count {
-            let right = format!("must be 0 to {}", count - 1);
-            return Err(CliError::new("--position", format!("{what} has {count}"), right));
+            let places = asperity_plot::counted(count as u64, "strike position");
+            let right =
+                if count == 1 { "leave it out".to_owned() } else { format!("must be 0 to {}", count - 1) };
+            return Err(CliError::new("--position", format!("{what} has {places}"), right));
         }
         if slowest_per_s(&self.model).is_infinite() && self.model.residual.is_none() {
             let rings = "rings outside 16 Hz to 20 kHz only, and has no noise bands";

@@ -1,4 +1,4 @@
-// The same in C++17: a plate is struck and stroked for half a second; what comes out is measured.
+// In C++17: a plate is struck and stroked for half a second; what comes out is measured.
 #include <asperity.hpp>
 
 #include <cmath>

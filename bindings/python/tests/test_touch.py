@@ -222,6 +222,11 @@ def test_each_output_that_is_silent_is_warned_of_with_its_own_reason(heights_m):
         asp.render(surface.on(asp.Body.stock("bar", 0.2, "steel")), rows)
 
 
+def test_a_solid_is_known_with_a_hyphen_too():
+    one, other = (asp.stroke(asp.Solid(name).on(asp.Body.stock("bar", 0.2, "steel")), duration=0.1) for name in ("rough-glass", "rough_glass"))
+    np.testing.assert_array_equal(one.haptic, other.haptic)
+
+
 def test_outputs_beyond_full_scale_are_warned_of(heights_m):
     surface = asp.Surface(heights_m, 0.14).on(asp.Body.stock("bar", 0.2, "steel"))
     for options, words in [
@@ -248,6 +253,7 @@ def test_a_missing_file_and_an_unknown_name_are_refused_where_they_stand(tmp_pat
     for act, piece in [
         (lambda: asp.Body.stock("plaet", 0.2, "steel"), 'stock: "plaet" is unknown; write "plate"; must be one of: '),
         (lambda: asp.Body.stock("plate", 0.2, "porcelain"), 'material: "porcelain" is unknown; '),
+        (lambda: asp.stroke("granite"), "surface: 'granite' is refused; must be asp.Surface, Solid"),
         (lambda: asp.Solid("granit"), 'solid: "granit" is unknown; write "granite"'),
         (lambda: asp.SceneFile(asp.Solid("granite"), probe="fingerpit"), 'probe: "fingerpit" is unknown; write "fingertip"'),
     ]:

@@ -171,7 +171,10 @@ export interface EngineOptions extends Partial<PrepareOptions> {
 
 /** What `frame` tells, 60 times a second. */
 export interface Frame {
-  /** 16 numbers a block; src/blocks.rs says which. */
+  /**
+   * 16 numbers a block, of its first contact: how many contacts touch; lowest and highest ground under it, m; lowest and highest skin, m; place along
+   * u and v, m; velocity along u and v, m/s; force that presses, N; momentum sent to the body, N·s; its name.
+   */
   rows: Float32Array;
   levels: [number, number];
   tiles: Float32Array | null;
@@ -180,6 +183,8 @@ export interface Frame {
 
 /** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`. */
 export class WebEngine extends EventTarget {
+  addEventListener(type: 'frame', listener: (event: CustomEvent<Frame>) => void, options?: boolean | AddEventListenerOptions): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject | null, options?: boolean | AddEventListenerOptions): void;
   readonly context: BaseAudioContext;
   readonly node: AudioWorkletNode;
   readonly told: Told;

@@ -6,7 +6,7 @@ namespace Asperity
 {
     public sealed class AsperityBody : MonoBehaviour
     {
-        [Tooltip("bar, tube, ring, plate, disc, bowl, block, box, can, bottle, pan, barrel or door; empty where ModesJson is given")]
+        [Tooltip("bar, tube, ring, plate, disc, bowl, block, box, can, bottle, pan, barrel, door, sheet or cushion; empty where ModesJson is given")]
         public string Stock = "plate";
         [Tooltip("Longest side or diameter, m")]
         public float SizeM = 0.3f;

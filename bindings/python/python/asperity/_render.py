@@ -92,6 +92,8 @@ def stroke(
     file; without them a stroke of 0.1 m/s at 1 N lands at -26 dBFS felt and -32 dBFS heard. tail_s: ring-out, s. The rest is as in
     `render`.
     """
+    if not isinstance(surface, _Surface):
+        raise ValueError(f"surface: {surface!r} is refused; must be asp.Surface, Solid, Brownian, Lattice or Sand")
     if isinstance(force, bool):
         raise ValueError(f"force: {force} is refused; it is how hard the finger presses, in N: force_output=True or =1000.0 keeps Take.force")
     scene = SceneFile(surface, probe=probe, actuators=actuators, audio=audio, tail_s=tail_s)

@@ -98,9 +98,9 @@ def _sides(extent: Extent, aspect: float = 1.0) -> dict[str, float]:
 
 
 def _known(kind: str, name: str) -> None:
-    """Refuses a name that is none of `names_of(kind)`."""
+    """Refuses a name that is none of `names_of(kind)`; `-` and `_` are one."""
     names = _native.names_of(kind)
-    if name not in names:
+    if name.replace("-", "_") not in (known.replace("-", "_") for known in names):
         meant = get_close_matches(name, names, 1)
         right = f'write "{meant[0]}"; ' if meant else ""
         raise ValueError(f'{kind}: "{name}" is unknown; {right}must be one of: {", ".join(names)}')
