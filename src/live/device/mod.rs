@@ -58,13 +58,13 @@ pub enum DeviceError {
         known: String,
     },
     /// No such device is there.
-    #[error("device: \"{0}\" is not there; list the devices for their ids")]
+    #[error("device: \"{0}\" is not there; list the devices for their ids (asperity play --list-devices)")]
     UnknownDevice(String),
     /// No device at all.
     #[error("device: no sound card was found; connect one, or start the sound server")]
     NoDevice,
     /// The system refused.
-    #[error("device: {0}; choose another device, rate or channel map")]
+    #[error("device: {0}; choose another device (asperity play --list-devices lists them), rate or channel map")]
     System(#[from] cpal::Error),
     /// The device does not run in blocks of the size asked for.
     #[error("device: blocks of {asked} frames are refused ({why}); {right}")]
