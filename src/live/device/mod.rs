@@ -64,7 +64,7 @@ pub enum DeviceError {
     #[error("device: no sound card was found; connect one, or start the sound server")]
     NoDevice,
     /// The system refused.
-    #[error("device: {0}; choose another device (asperity play --list-devices lists them), rate or channel map")]
+    #[error("device: {0}; choose another one (asperity play --list-devices), rate or channel map")]
     System(#[from] cpal::Error),
     /// The device does not run in blocks of the size asked for.
     #[error("device: blocks of {asked} frames are refused ({why}); {right}")]

@@ -10,6 +10,10 @@
 //!
 //! Of 55 household recordings (29 looked at before) 15 were explained worse than silence and none
 //! is; 961 modes had a decay whose deviation is above half of it, and 435 have.
+//!
+//! Refining the poles of all modes once more, on all of the recording, was tried: over 67 others
+//! 0.3 dB more of it is explained, and decays of the six strongest partials are 16 % off for 14. So
+//! it is not done.
 
 use crate::body::last_solve::{last_solve, peak_ratio};
 use crate::body::struck::{lead, struck};
