@@ -133,7 +133,7 @@ fn every_test_bench_and_example_that_the_figures_name_exists() {
         crates.clone().any(|within| is_there(&place(within)))
     };
     let mut named = 0;
-    for (option, folder) in [("--test ", "tests"), ("--bench ", "benches"), ("--example ", "examples")] {
+    for (option, folder) in [("--bench ", "benches"), ("--example ", "examples")] {
         for rest in text.split(option).skip(1) {
             let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
             assert!(exists(folder, &name), "docs/lab/figures.md: {option}{name} does not exist");
@@ -150,6 +150,20 @@ fn every_test_bench_and_example_that_the_figures_name_exists() {
         }
     }
     assert!(named > 20, "{named}");
+}
+
+#[test]
+fn cargo_knows_every_program_of_tests_that_a_document_names() {
+    let crates = CRATES.iter().chain(&["offline/evidence"]);
+    let manifest = |within| fs::read_to_string(root().join(within).join("Cargo.toml")).unwrap();
+    let manifests: String = crates.map(manifest).collect();
+    for document in documents() {
+        for rest in fs::read_to_string(&document).unwrap().split("--test ").skip(1) {
+            let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            let declared = manifests.contains(&format!("[[test]]\nname = \"{name}\"\n"));
+            assert!(declared, "{}: --test {name}: is declared by no Cargo.toml", document.display());
+        }
+    }
 }
 
 #[test]
